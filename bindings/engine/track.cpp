@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 #include <variant>
@@ -109,6 +110,12 @@ struct PyReport {
   int rejected_plots;
 };
 
+struct PyReportResult {
+  Status status;
+  std::int64_t track_id;
+  std::vector<Event> events;
+};
+
 /// Tracks as arrays.
 struct PyTracks {
   py::array_t<std::int64_t> track_id;
@@ -117,6 +124,8 @@ struct PyTracks {
   py::object turn_rate_rad_s;  ///< None where no model changes its turn rate
   py::array_t<std::int64_t> hits, misses;
   std::vector<std::string> name;
+  std::vector<std::string> identity;
+  py::array_t<double> identity_probability, identity_time_s;
 };
 
 /// A tracker with an estimator given by hand.
@@ -273,6 +282,57 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
                   [&] { return tracker.visit([&](auto& one) { return one.sector(part); }); });
 }
 
+PyReportResult take_report(AnyTracker& tracker, double time_s, std::string_view identity,
+                           double north_m, double east_m, double position_std_m,
+                           const std::optional<double>& vnorth_mps,
+                           const std::optional<double>& veast_mps, double velocity_std_mps,
+                           std::string_view source) {
+  const auto require_text = [](const char* name, std::string_view text, std::size_t most) {
+    if (text.empty() || text.size() > most || !is_utf8(text))
+      throw py::value_error(std::string(name) + " must be 1 to " + std::to_string(most) +
+                            " bytes of UTF-8, got " + std::to_string(text.size()));
+  };
+  require_text("identity", identity, PositionReport::kMostIdentity);
+  require_text("source", source, PositionReport::kMostSource);
+  require_in_range("time_s", time_s);
+  require_in_range("north_m", north_m);
+  require_in_range("east_m", east_m);
+  require_positive("position_std_m", position_std_m);
+  if (vnorth_mps.has_value() != veast_mps.has_value())
+    throw py::value_error("vnorth_mps and veast_mps must be given together");
+  PositionReport one{.source = source,
+                     .identity = identity,
+                     .time_s = time_s,
+                     .position_m = {north_m, east_m},
+                     .position_std_m = position_std_m};
+  if (vnorth_mps) {
+    require_in_range("vnorth_mps", *vnorth_mps);
+    require_in_range("veast_mps", *veast_mps);
+    require_positive("velocity_std_mps", velocity_std_mps);
+    one.velocity_mps = {*vnorth_mps, *veast_mps};
+    one.velocity_std_mps = velocity_std_mps;
+  }
+  const auto hold = tracker.lock();  // the events are the tracker's memory
+  const ReportResult result = tracker.visit([&](auto& any) { return any.report(one); });
+  return {result.status, result.track_id, {result.events.begin(), result.events.end()}};
+}
+
+PyReport partial(AnyTracker& tracker, const char* what, PositionPart part, int sensor,
+                 double time_s, const char* name, const DoubleArray& values, double std,
+                 double false_per_unit, const OwnShip& own) {
+  require_shape(values.ndim() == 1, name, "(n,)", values);
+  require(sensor >= 0 && sensor < int(kMostPartialSensors), "sensor",
+          ("from 0 to " + std::to_string(kMostPartialSensors - 1)).c_str(), sensor);
+  require_in_range("time_s", time_s);
+  own.validate();
+  const PartialScan scan{
+      part, sensor,         time_s, {values.data(), static_cast<std::size_t>(values.shape(0))},
+      std,  false_per_unit, own};
+  const auto hold = tracker.lock();  // the report is the tracker's memory
+  return reported(scan.values.size(), what,
+                  [&] { return tracker.visit([&](auto& one) { return one.partial(scan); }); });
+}
+
 template <class Estimator, class Steps>
 PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<double>& time_s,
                 bool tentative) {
@@ -296,10 +356,18 @@ PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<do
       py::none(),
       counts([](const T& t) { return t.hits; }),
       counts([](const T& t) { return t.misses; }),
-      {}};
+      {},
+      {},
+      numbers([&](const T& t) { return tracker.identity_probability(t); }),
+      numbers([&](const T& t) {
+        const Identity* identity = tracker.identity_of(t);
+        return identity == nullptr ? std::numeric_limits<double>::quiet_NaN() : identity->time_s;
+      })};
   for (const Track& track : wanted) {
     table.status.emplace_back(status_name(track.status));
     table.name.emplace_back(track.label());
+    const Identity* identity = tracker.identity_of(track);
+    table.identity.emplace_back(identity == nullptr ? "" : identity->name.data());
   }
   if constexpr (kHasTurnRates<Estimator>)
     if (tracker.prototype().turn_rates_rad_s().size() > 0)
@@ -339,22 +407,34 @@ void define_track(py::module_& parent) {
       .def(py::pickle(
           [](const Event& event) {
             return py::make_tuple(int(event.kind), event.track_id, event.tentative_id, event.time_s,
-                                  int(event.reason));
+                                  int(event.reason), std::string(event.identity.data()));
           },
           [](const py::tuple& fields) {
             const auto kind = fields[0].cast<int>();
             const auto reason = fields[4].cast<int>();
-            if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kFull) ||
+            if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kIdentityShared) ||
                 reason < int(LossReason::kNone) || reason > int(LossReason::kFailed))
               throw py::value_error("state is not that of an event");
-            return Event{TrackEvent(kind), fields[1].cast<std::int64_t>(),
-                         fields[2].cast<std::int64_t>(), fields[3].cast<double>(),
-                         LossReason(reason)};
+            Event event{TrackEvent(kind), fields[1].cast<std::int64_t>(),
+                        fields[2].cast<std::int64_t>(), fields[3].cast<double>(),
+                        LossReason(reason)};
+            const auto identity = fields[5].cast<std::string>();
+            std::copy_n(identity.begin(), std::min(identity.size(), event.identity.size() - 1),
+                        event.identity.begin());
+            return event;
           }))
       .def_property_readonly(
           "kind", [](const Event& event) { return to_string(event.kind); },
           "started, confirmed, coasting or lost; full where max_tracks is reached, again only when "
-          "there has been room in between")
+          "there has been room in between; identified or identity_lost where a track is believed "
+          "to "
+          "be of a vessel that reports, or no longer; identity_disagrees where a report of it is "
+          "far from its track, identity_jumps where it is farther from the one before than a "
+          "vessel "
+          "runs, identity_shared where two vessels report from one track")
+      .def_property_readonly(
+          "identity", [](const Event& event) { return std::string(event.identity.data()); },
+          "of the vessel that reports, in the events of one; else empty")
       .def_property_readonly(
           "reason", [](const Event& event) { return to_string(event.reason); },
           "why a track was lost: missed (without a plot for too long), doubtful (a tentative track "
@@ -389,11 +469,26 @@ void define_track(py::module_& parent) {
                std::to_string(r.rejected_plots) + " rejected, " +
                many(static_cast<py::ssize_t>(r.events.size()), "event") + ">";
       });
+  py::class_<PyReportResult> report_result(m, "ReportResult", "Result of a vessel's report.");
+  define_pickle(report_result, &PyReportResult::status, &PyReportResult::track_id,
+                &PyReportResult::events);
+  report_result
+      .def_readonly("status", &PyReportResult::status,
+                    "ok where it has updated or started a track; gated where it has not; "
+                    "negative_time_step or not_finite where its time is not of now")
+      .def_readonly("track_id", &PyReportResult::track_id,
+                    "of the track that its vessel is believed to be; 0 without one")
+      .def_readonly("events", &PyReportResult::events)
+      .def("__repr__", [](const PyReportResult& r) {
+        return "<ReportResult: " + std::string(to_string(r.status)) + ", track " +
+               std::to_string(r.track_id) + ">";
+      });
   py::class_<PyTracks> table(m, "TrackTable", "Tracks as arrays, older ones first.");
   define_pickle(table, &PyTracks::track_id, &PyTracks::status, &PyTracks::time_s, &PyTracks::mean,
                 &PyTracks::covariance, &PyTracks::mode_probability, &PyTracks::nis,
                 &PyTracks::existence, &PyTracks::visibility, &PyTracks::turn_rate_rad_s,
-                &PyTracks::hits, &PyTracks::misses, &PyTracks::name);
+                &PyTracks::hits, &PyTracks::misses, &PyTracks::name, &PyTracks::identity,
+                &PyTracks::identity_probability, &PyTracks::identity_time_s);
   table.def_readonly("track_id", &PyTracks::track_id, "(k,)")
       .def_readonly("status", &PyTracks::status, "tentative, confirmed, coasting or held")
       .def_readonly("time_s", &PyTracks::time_s, "(k,) of the belief")
@@ -409,6 +504,12 @@ void define_track(py::module_& parent) {
       .def_readonly("hits", &PyTracks::hits, "(k,)")
       .def_readonly("misses", &PyTracks::misses, "(k,) consecutive scans without a plot")
       .def_readonly("name", &PyTracks::name, "given by the operator")
+      .def_readonly("identity", &PyTracks::identity,
+                    "of the vessel that reports and that the track is believed to be; else empty")
+      .def_readonly("identity_probability", &PyTracks::identity_probability,
+                    "(k,) how probable that is; 0 without an identity")
+      .def_readonly("identity_time_s", &PyTracks::identity_time_s,
+                    "(k,) of the vessel's last report; NaN without an identity")
       .def("__len__", [](const PyTracks& table) { return table.track_id.size(); })
       .def("__repr__", [](const PyTracks& table) {
         return "<TrackTable: " + many(table.track_id.size(), "track") + ">";
@@ -514,6 +615,125 @@ ValueError
 FilterError
     When the time is not finite, before the last sector or after `latest_time_s`; the tracker is
     unchanged.)")
+      .def("report", &take_report, py::kw_only(), py::arg("time_s"), py::arg("identity"),
+           py::arg("north_m"), py::arg("east_m"), py::arg("position_std_m") = 10.0,
+           py::arg("vnorth_mps") = py::none(), py::arg("veast_mps") = py::none(),
+           py::arg("velocity_std_mps") = 0.5, py::arg("source") = "ais",
+           R"(Take the position that a vessel reports of itself, such as by AIS.
+
+It is of the track that its identity is believed to be, which is decided by where the reports of the
+identity are, one after the other, and of a new track where there is none near and the vessel has
+reported before. It updates the track only while they agree, so that an identity that is wrong,
+stolen or old drags no track away; events tell of it. A track that reports is kept while its vessel
+can be silent. A report older than 120 s before the last scan, or not newer than the last one of its
+identity, and one more than 120 s ahead, changes nothing. Estimators other than `Imm` do not take
+the velocity.
+
+Parameters
+----------
+time_s : float
+    Of the position, true time.
+identity : str
+    Such as the MMSI; at most 31 bytes of UTF-8.
+north_m, east_m, position_std_m : float
+vnorth_mps, veast_mps : float, optional
+velocity_std_mps : float
+    Of the velocity, per axis.
+source : str
+    The same identity of two sources is two; at most 15 bytes.
+
+Returns
+-------
+ReportResult
+
+Raises
+------
+ValueError
+    When a number is not finite or out of range, or a text empty or too long.)")
+      .def(
+          "bearings",
+          [](AnyTracker& tracker, double time_s, const DoubleArray& bearing_rad,
+             double bearing_std_rad, int sensor, double false_per_rad, const OwnShip& own) {
+            require_positive("bearing_std_rad", bearing_std_rad);
+            require_positive("false_per_rad", false_per_rad);
+            return partial(tracker, "bearings", PositionPart::kBearing, sensor, time_s,
+                           "bearing_rad", bearing_rad, bearing_std_rad, false_per_rad, own);
+          },
+          py::kw_only(), py::arg("time_s"), py::arg("bearing_rad"), py::arg("bearing_std_rad"),
+          py::arg("sensor") = 0, py::arg("false_per_rad") = 1.0,
+          py::arg_v("own", OwnShip{}, "OwnShip()"),
+          R"(Take bearings of targets without their ranges, as of a camera.
+
+They update the confirmed tracks, start none, and tell of no misses. Bearings between several tracks
+are shared by their likelihoods, and which tracks the sensor sees is learned.
+
+Parameters
+----------
+time_s : float
+    Of all bearings, at most 120 s from the last scan.
+bearing_rad : (n,) array
+    From north, of targets in any order, with false ones among them.
+bearing_std_rad : float
+sensor : int
+    Number of the sensor, from 0 to 3.
+false_per_rad : float
+    Mean of the false bearings in a radian.
+own : OwnShip
+    Of the sensor.
+
+Returns
+-------
+ScanReport
+    The track that each most probably belongs to.
+
+Raises
+------
+ValueError
+    When a shape does not fit, or a number is out of range.
+FilterError
+    When the time is farther from the last scan; the tracker is unchanged.)")
+      .def(
+          "ranges",
+          [](AnyTracker& tracker, double time_s, const DoubleArray& range_m, double range_std_m,
+             int sensor, double false_per_m, const OwnShip& own) {
+            require_positive("range_std_m", range_std_m);
+            require_positive("false_per_m", false_per_m);
+            return partial(tracker, "ranges", PositionPart::kRange, sensor, time_s, "range_m",
+                           range_m, range_std_m, false_per_m, own);
+          },
+          py::kw_only(), py::arg("time_s"), py::arg("range_m"), py::arg("range_std_m"),
+          py::arg("sensor") = 0, py::arg("false_per_m") = 1e-3,
+          py::arg_v("own", OwnShip{}, "OwnShip()"),
+          R"(Take ranges of targets without their bearings; as `bearings`.
+
+Parameters
+----------
+time_s : float
+range_m : (n,) array
+range_std_m : float
+sensor : int
+false_per_m : float
+    Mean of the false ranges in a metre.
+own : OwnShip
+
+Returns
+-------
+ScanReport
+
+Raises
+------
+ValueError, FilterError
+    As `bearings`.)")
+      .def(
+          "find",
+          [](const AnyTracker& tracker, std::string_view identity, std::string_view source) {
+            return tracker.visit([&](const auto& one) {
+              const Track* track = one.find(source, identity);
+              return track == nullptr ? std::int64_t{0} : track->id;
+            });
+          },
+          py::arg("identity"), py::kw_only(), py::arg("source") = "ais",
+          "The number of the track that a vessel which reports is believed to be; 0 without one.")
       .def(
           "add_radar",
           [](AnyTracker& tracker, const Radar& radar) {

@@ -149,6 +149,7 @@
 #include "wakeline/track/life_cycle.hpp"
 #include "wakeline/track/look.hpp"
 #include "wakeline/track/mode_positions.hpp"
+#include "wakeline/track/partial_scan.hpp"
 #include "wakeline/track/place_index.hpp"
 #include "wakeline/track/plane_index.hpp"
 #include "wakeline/track/plot_likelihood.hpp"

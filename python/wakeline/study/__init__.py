@@ -16,6 +16,7 @@ from . import (
     ais_forecast,
     association,
     dead_reckoning,
+    fusion,
     fuzzy_alpha_beta,
     imm,
     search,
@@ -34,6 +35,7 @@ __all__ = [
     "ais_forecast",
     "association",
     "dead_reckoning",
+    "fusion",
     "fuzzy_alpha_beta",
     "imm",
     "load",
@@ -57,6 +59,7 @@ _STUDIES = {
         search,
         usv_navigation,
         association,
+        fusion,
     )
 }
 

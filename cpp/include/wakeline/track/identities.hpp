@@ -69,7 +69,7 @@ struct Identity {
   };
 
   static constexpr std::size_t kMostCandidates = 3;
-  static constexpr double kLeastLogOdds = -8.0, kMostLogOdds = 8.0;
+  static constexpr double kLeastLogOdds = -8.0, kMostLogOdds = 6.0;
 
   std::array<char, PositionReport::kMostSource + 1> source = {};
   std::array<char, PositionReport::kMostIdentity + 1> name = {};

@@ -107,6 +107,9 @@ struct Event {
   std::array<char, 32> identity = {};     ///< of the vessel that reports, zero-terminated
 };
 
+/// Sensors of bearings or ranges alone.
+inline constexpr std::size_t kMostPartialSensors = 4;
+
 /// A belief over `[x, vx, y, vy]` moved in time, also backwards, at constant velocity.
 inline Gaussian<4> at_constant_velocity(const Gaussian<4>& kinematics, double dt_s) noexcept {
   Mat<double, 4, 4> step = Mat<double, 4, 4>::Identity();
@@ -164,6 +167,8 @@ struct Track {
   double looked_s = 0.0;       ///< when a radar last looked: a plot or a miss
   double seen_until_s = -std::numeric_limits<double>::infinity();
   ///< until then a miss does not count: another sensor has seen it
+  /// Of each sensor of bearings or ranges alone, the probability that it sees the target.
+  std::array<double, kMostPartialSensors> in_view = {0.5, 0.5, 0.5, 0.5};
   bool hushed = false;  ///< followed, but neither shown nor reported: the operator's word
 
   [[nodiscard]] bool confirmed() const noexcept { return status != TrackStatus::kTentative; }
@@ -224,6 +229,7 @@ struct Track {
     fields(plot_m2);
     fields(looked_s);
     fields(seen_until_s);
+    fields(in_view);
     fields(hushed);
   }
 };

@@ -25,6 +25,7 @@
 #include "wakeline/track/identities.hpp"
 #include "wakeline/track/life_cycle.hpp"
 #include "wakeline/track/mode_positions.hpp"
+#include "wakeline/track/partial_scan.hpp"
 #include "wakeline/track/plot_likelihood.hpp"
 #include "wakeline/track/radar_state.hpp"
 #include "wakeline/track/time_alignment.hpp"
@@ -170,6 +171,14 @@ class Tracker {
 
   static constexpr double kOldestReport_s = 120.0;
 
+  /// Takes bearings or ranges of targets without the other part of their position.
+  ///
+  /// They update the confirmed tracks, start none, and tell of no misses. Values between several
+  /// tracks are shared by their likelihoods. The time may be as far from the last scan as that of a
+  /// report; the estimate of a later time takes them as its velocity says. `plot_track_id` is of
+  /// each value up to `max_plots` the track it most probably belongs to.
+  ScanReport partial(const PartialScan& scan) noexcept;
+
   /// The vessel that a track is believed to be by its reports, or null; `time_s` is that of its
   /// last report.
   [[nodiscard]] const Identity* identity_of(const Track& track) const noexcept {
@@ -284,8 +293,12 @@ class Tracker {
   static constexpr std::uint32_t kArchiveVersion = 9;
   /// Vessels per area that an identity may be of when it is not of the track at hand.
   static constexpr double kOtherVessels_per_m2 = 1e-8;
-  static constexpr double kMostReportEvidence = 4.0;  ///< of a report, log odds
-  static constexpr double kReportGate = 16.0;         ///< squared standard deviations
+  static constexpr double kOtherVelocities_per_m2s2 = 1e-3;  ///< the same of velocities
+  static constexpr double kMostReportEvidence = 4.0;         ///< of a report, log odds
+  static constexpr double kReportGate = 16.0;                ///< squared standard deviations
+  static constexpr double kPartialGate = 9.0;                ///< the same of a bearing or range
+  static constexpr double kPartialDetection = 0.7;           ///< a target in view gives one
+  static constexpr double kViewMemory = 0.98;                ///< from scan to scan of such a sensor
   static constexpr double kSure = 0.9;  ///< a report updates a track that it is of by this much
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
@@ -860,6 +873,39 @@ class Tracker {
             variance_m2 * Mat<double, 2, 2>::Identity() + alignment.added_m2(late_s)};
   }
 
+  /// The same of position and velocity, moved by the velocity that it reports. What the target may
+  /// have maneuvered since makes it less certain, by the models of the track.
+  [[nodiscard]] Gaussian<4> reported_kinematics(const PositionReport& report, const Track& track,
+                                                double late_s) noexcept {
+    const double extent_m = state().radar.extent_std_m;
+    const double position_m2 = report.position_std_m * report.position_std_m + extent_m * extent_m;
+    const double velocity_m2s2 = report.velocity_std_mps * report.velocity_std_mps;
+    Gaussian<4> then;
+    then.mean << report.position_m[0], report.velocity_mps[0], report.position_m[1],
+        report.velocity_mps[1];
+    then.covariance =
+        Vec<double, 4>(position_m2, velocity_m2s2, position_m2, velocity_m2s2).asDiagonal();
+    if (!(late_s > 0.0)) return then;
+    Gaussian<4> now = at_constant_velocity(then, late_s);
+    Estimator ahead = estimator_of(track);
+    PredictionStep<Estimator> step{&ahead, late_s};
+    steps_.predict({&step, 1});
+    if (step.status != Status::kOk) return now;
+    const Mat<double, 4, 4> added =
+        step.kinematics.covariance - at_constant_velocity(track.kinematics, late_s).covariance;
+    const double added_m2 = std::max((added(0, 0) + added(2, 2)) / 2, 0.0);
+    const double added_m2s2 = std::max((added(1, 1) + added(3, 3)) / 2, 0.0);
+    const double most = 0.99 * std::sqrt(added_m2 * added_m2s2);
+    const double common = std::clamp((added(0, 1) + added(2, 3)) / 2, -most, most);
+    for (const int k : {0, 2}) {
+      now.covariance(k, k) += added_m2;
+      now.covariance(k + 1, k + 1) += added_m2s2;
+      now.covariance(k, k + 1) += common;
+      now.covariance(k + 1, k) += common;
+    }
+    return now;
+  }
+
   /// Whether a track may be the one that reports, about: so far a vessel runs off its course.
   [[nodiscard]] bool is_about(const Track& track, const PositionReport& report) const noexcept {
     constexpr double kSigmas = 8.0;
@@ -943,35 +989,26 @@ class Tracker {
     predict_to(track, report.time_s);
     Estimator& estimator = estimator_at(track.slot);
     const double late_s = track.time_s - report.time_s;
-    const Gaussian<2> fix = reported_position(report, track, late_s);
-    const double weight = probability / kOtherVessels_per_m2;
     double share = 0.0;
-    const auto with_velocity = [&] {
-      Alternative<KinematicFix> reading{{}, {}, weight};
-      const double velocity_m2s2 = report.velocity_std_mps * report.velocity_std_mps;
-      reading.z << fix.mean[0], report.velocity_mps[0], fix.mean[1], report.velocity_mps[1];
-      reading.sensor.covariance.setZero();
-      for (const int i : {0, 1}) {
-        reading.sensor.covariance(2 * i + 1, 2 * i + 1) = velocity_m2s2;
-        for (const int j : {0, 1}) reading.sensor.covariance(2 * i, 2 * j) = fix.covariance(i, j);
-      }
-      return reading;
-    };
-    constexpr bool kTakesVelocity = requires(Alternative<KinematicFix> reading) {
-      estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1), 1.0,
-                       std::span(&share, 1));
-    };
-    const bool at_once = late_s <= longest_period_s();
     bool taken = false;
-    if constexpr (kTakesVelocity)
-      if (report.has_velocity() && at_once) {
-        const Alternative<KinematicFix> reading = with_velocity();
+    if constexpr (requires(Alternative<KinematicFix> reading) {
+                    estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1), 1.0,
+                                     std::span(&share, 1));
+                  }) {
+      if (report.has_velocity()) {
+        const Gaussian<4> now = reported_kinematics(report, track, late_s);
+        const Alternative<KinematicFix> reading{
+            KinematicFix{now.covariance}, now.mean,
+            probability / (kOtherVessels_per_m2 * kOtherVelocities_per_m2s2)};
         (void)estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1),
                                1.0 - probability, std::span(&share, 1));
         taken = true;
       }
+    }
     if (!taken) {
-      const Alternative<Fix> reading{Fix{fix.covariance}, fix.mean, weight};
+      const Gaussian<2> now = reported_position(report, track, late_s);
+      const Alternative<Fix> reading{Fix{now.covariance}, now.mean,
+                                     probability / kOtherVessels_per_m2};
       (void)estimator.update(std::span<const Alternative<Fix>>(&reading, 1), 1.0 - probability,
                              std::span(&share, 1));
     }
@@ -1120,16 +1157,18 @@ class Tracker {
   std::int64_t next_tentative_id_ = -1;
   std::int64_t newest_before_ = 0;  ///< number of the newest tentative track before this scan
 
-  bool whole_turn_ = true;        ///< of this call
-  std::vector<int> due_;          ///< slots of the tracks whose gate the beam has passed
-  std::vector<int> waiting_;      ///< and of those whose gate it is in
-  std::vector<int> rivals_;       ///< of these that have a candidate in common with one that is due
-  std::vector<int> competing_;    ///< both
-  std::vector<double> evidence_;  ///< by place in the list of tracks, of a report
-  std::vector<char> touched_;     ///< by slot: whether this call has counted for the track
-  std::vector<BeamArc> arcs_;     ///< of the tracks that are due
-  std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
-  std::vector<char> is_candidate_;  ///< by plot: of a track that is due
+  bool whole_turn_ = true;      ///< of this call
+  std::vector<int> due_;        ///< slots of the tracks whose gate the beam has passed
+  std::vector<int> waiting_;    ///< and of those whose gate it is in
+  std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
+  std::vector<int> competing_;  ///< both
+  std::vector<double> value_likelihood_;  ///< by value of a partial scan, of all tracks
+  std::vector<double> value_best_;        ///< and of the likeliest
+  std::vector<double> evidence_;          ///< by place in the list of tracks, of a report
+  std::vector<char> touched_;             ///< by slot: whether this call has counted for the track
+  std::vector<BeamArc> arcs_;             ///< of the tracks that are due
+  std::vector<char> is_contested_;        ///< by plot: a track that waits competes for it
+  std::vector<char> is_candidate_;        ///< by plot: of a track that is due
 
   // The stages of a scan, in order
   ModePositions modes_;  ///< of the track at hand
@@ -1169,6 +1208,8 @@ Tracker<Estimator, Steps>::Tracker(std::span<const Radar> radars, const TrackerC
   touched_.resize(estimators_.size());
   arcs_.reserve(estimators_.size());
   evidence_.reserve(estimators_.size());
+  value_likelihood_.reserve(plots);
+  value_best_.reserve(plots);
   is_candidate_.reserve(plots);
   is_contested_.reserve(plots);
   plot_track_id_.reserve(plots);
@@ -1315,6 +1356,77 @@ ReportResult Tracker<Estimator, Steps>::report(const PositionReport& report) noe
   if (!agrees || identity.jumps || probability < kSure) return {Status::kGated, track->id, events_};
   take_report(report, identity, probability, *track);
   return {Status::kOk, track->id, events_};
+}
+
+template <class Estimator, class Steps>
+ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& scan) noexcept {
+  if (!scan.is_valid() || (started_ && scan.time_s > time_s_ + kOldestReport_s))
+    return rejected(Status::kNotFinite);
+  if (started_ && scan.time_s < time_s_ - kOldestReport_s)
+    return rejected(Status::kNegativeTimeStep);
+  events_.clear();
+  const std::span<const double> values =
+      scan.values.first(std::min(scan.values.size(), static_cast<std::size_t>(config_.max_plots)));
+  plot_track_id_.assign(values.size(), 0);
+  const double extent_m = state().radar.extent_std_m;
+  const auto part_of = [&](const Track& track) {
+    return PartOfPosition(scan, position_in(kinematics_at(track, scan.time_s)), extent_m);
+  };
+  // How likely each value is by all tracks, and by the one by which it is likeliest.
+  value_likelihood_.assign(values.size(), 0.0);
+  value_best_.assign(values.size(), 0.0);
+  due_.clear();
+  for (const int slot : tracks_.slots()) {
+    const Track& track = tracks_.at(slot);
+    if (!track.active()) continue;
+    const PartOfPosition part = part_of(track);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (!(part.squared_distance(values[k]) <= kPartialGate)) continue;
+      const double likelihood = part.likelihood(values[k]);
+      value_likelihood_[k] += likelihood;
+      if (likelihood > value_best_[k]) {
+        value_best_[k] = likelihood;
+        plot_track_id_[k] = track.id;
+      }
+    }
+    due_.push_back(slot);
+  }
+  const auto others_than = [&](const PartOfPosition& part, std::size_t k) {
+    return std::max(value_likelihood_[k] - part.likelihood(values[k]), 0.0) + scan.false_per_unit;
+  };
+  for (const int slot : due_) {
+    Track& track = tracks_.at(slot);
+    const PartOfPosition part = part_of(track);
+    double ratio = 0.0;  // of the values to being false or another target's
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (part.squared_distance(values[k]) <= kPartialGate)
+        ratio += part.likelihood(values[k]) / others_than(part, k);
+    double& in_view = track.in_view[static_cast<std::size_t>(scan.sensor)];
+    const double detection = kPartialDetection * in_view;
+    const double seen = in_view * (1.0 - kPartialDetection + kPartialDetection * ratio);
+    in_view = kViewMemory * seen / (seen + 1.0 - in_view) + (1.0 - kViewMemory) * 0.5;
+    if (ratio == 0.0) continue;
+    predict_to(track, scan.time_s);
+    const double late_s = track.time_s - scan.time_s;
+    const TimeAlignment alignment(track, longest_period_s(),
+                                  late_s > longest_period_s() ? maneuver_m2s3(track, late_s) : 0.0);
+    std::array<Alternative<Fix>, kMaxAlternatives> readings;
+    std::array<double, kMaxAlternatives> share;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < values.size() && count < readings.size(); ++k) {
+      if (!(part.squared_distance(values[k]) <= kPartialGate)) continue;
+      const Gaussian<2> fix = part.fix(values[k]);
+      readings[count++] = {Fix{fix.covariance + alignment.added_m2(late_s)},
+                           fix.mean + late_s * track.velocity(),
+                           detection * part.per_fix() / others_than(part, k)};
+    }
+    Estimator& estimator = estimator_at(slot);
+    (void)estimator.update(std::span<const Alternative<Fix>>(readings.data(), count),
+                           1.0 - detection, std::span(share.data(), count));
+    track.kinematics = kinematics_of(estimator.estimate());
+  }
+  return {Status::kOk, plot_track_id_, events_,
+          static_cast<int>(scan.values.size() - values.size())};
 }
 
 template <class Estimator, class Steps>
