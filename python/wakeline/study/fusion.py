@@ -2,7 +2,7 @@
 
 - ``two_radars``: 40 vessels in the view of two radars of other errors, periods and places; by the
   ``fine`` one alone, the ``coarse`` one alone, and ``both``.
-- ``ais``: 40 vessels that report every 10 s, 1 to 20 s late; by the ``radar`` alone and by ``both``.
+- ``ais``: 40 vessels that report every 10 s, 1 to 20 s late; by the ``radar`` alone and ``both``.
 - ``wrong_ais``: 60 vessels of which 40 report, six of them wrongly: 2 NM off, a position that
   stands, at 0/0, an identity that two use, one that moves to another vessel, and a drift.
 
