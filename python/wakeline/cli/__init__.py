@@ -30,6 +30,7 @@ from . import (
     search,
     study,
     track,
+    view,
 )
 
 _BAD_INPUT = 2
@@ -122,6 +123,7 @@ def _parser() -> argparse.ArgumentParser:
         demo,
         track,
         live,
+        view,
         calibrate,
         navigate,
         search,

@@ -8,7 +8,7 @@ from pathlib import Path
 from wakeline import metrics, recording
 from wakeline.tracking import Settings
 
-from . import outputs, report
+from . import outputs, report, view
 from .track import draw_into, track_into
 
 _ABOUT = {
@@ -38,7 +38,15 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "--out", type=Path, metavar="DIR", default=Path("wakeline-demo"), help="default %(default)s"
     )
     parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
+    view.add_screen_options(parser, "show the recording in the browser instead, as it is tracked")
     parser.set_defaults(run=run)
+
+
+def _show(episode: recording.Episode, settings: Settings, arguments: argparse.Namespace) -> None:
+    from wakeline.live.playback import Playback, RecordedPlots
+
+    plots = RecordedPlots(episode, settings)
+    view.show(Playback(plots, own=episode.own, settings=settings, speed=arguments.speed), arguments)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -47,6 +55,9 @@ def run(arguments: argparse.Namespace) -> None:
     print(_ABOUT[name])
     real = recording.load(name)
     settings = Settings.default().knowing(real.radar)
+    if arguments.web is not None:
+        _show(real.episodes[0], settings, arguments)
+        return
     tracks = track_into(arguments.out, real, settings, f"radar {name}")
     score = metrics.score(tracks, real)
     print(f"\nThe tracks against the truth:\n\n{report.explained(score.overall)}")

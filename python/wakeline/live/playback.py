@@ -8,6 +8,8 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Protocol
 
@@ -19,6 +21,10 @@ from wakeline.recording import Episode, OwnShipMotion, Tracks
 from wakeline.tracking import MODE_NAMES, Settings, median_step_s
 
 from .alarms import AlarmConfig, AlarmLog
+from .config import config_of
+from .record import read_session
+from .service import feed_record
+from .session import Session
 from .watch import AlarmBoard
 from .zones import Zone, Zones
 
@@ -63,73 +69,32 @@ class Source(Protocol):
         """Go back to a state."""
 
 
-class Playback:
-    """Plays a source as a live session: pictures, alarms and commands, and a time that obeys.
-
-    Setting the time back restores a snapshot from before and goes on from there, so that the tracks
-    are the same as at first; what the operator did after the new time is gone.
-
-    Parameters
-    ----------
-    source : Source
-    own : OwnShipMotion, optional
-        Own ship.
-    settings : Settings, optional
-        With the limits of danger.
-    zones : Zones or sequence of Zone, optional
-    config : AlarmConfig, optional
-    log : AlarmLog, optional
-        Receives the changes of alarms, once for each time of the recording.
-    origin_deg : (float, float), optional
-        Latitude and longitude of north 0, east 0.
-    speed : float
-        Seconds of the recording in a second.
+class Player:
+    """A time that plays, stops and can be set, on a thread.
 
     Attributes
     ----------
+    start_s, end_s, time_s : float
+        Of the recording, and now.
+    speed : float
+        Seconds of the recording in a second.
+    paused : bool
     sweeps : list of callable
-        Unused: there is no video.
+        As of a :class:`wakeline.live.Session`.
     lock : threading.RLock
-    time_s : float
+        Held whenever the player changes.
     """
 
-    def __init__(
-        self,
-        source: Source,
-        *,
-        own: OwnShipMotion | None = None,
-        settings: Settings | None = None,
-        zones: Zones | Sequence[Zone] = (),
-        config: AlarmConfig | None = None,
-        log: AlarmLog | None = None,
-        origin_deg: tuple[float, float] | None = None,
-        speed: float = 1.0,
-    ) -> None:
+    def __init__(self, start_s: float, end_s: float, speed: float) -> None:
+        self.start_s, self.end_s, self.time_s = start_s, end_s, start_s
+        self.speed, self.paused = _speed(speed), False
         self.sweeps: list[Callable[..., None]] = []
         self.lock = threading.RLock()
-        self.time_s = source.start_s
-        self.speed, self.paused = _speed(speed), False
-        self._source, self._own, self._log = source, own, log
-        self._logged_s = -math.inf
-        settings = settings or Settings.default()
-        self._board = AlarmBoard(settings.danger_limits, zones, config)
-        self._plane = None
-        if origin_deg is not None:
-            latitude_rad, longitude_rad = np.deg2rad(origin_deg)
-            self._plane = wl.LocalPlane(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
-        self._history: dict[int, deque[tuple[float, float, float]]] = {}
-        self._snapshots: list[tuple[float, bytes]] = []
-        self._spacing_s = _SNAPSHOT_S
-        self._step_s = -math.inf
         self._thread: threading.Thread | None = None
         self._stopped = threading.Event()
-        self._keep()
-        self._advance(source.start_s)
 
-    # Time -----------------------------------------------------------------------------------------
-
-    def start(self) -> Playback:
-        """Play on a thread until :meth:`close`."""
+    def start(self):
+        """Play on a thread until :meth:`close`; returns the player."""
         self._thread = threading.Thread(target=self._play, name="wakeline-playback", daemon=True)
         self._thread.start()
         return self
@@ -152,11 +117,174 @@ class Playback:
     def go_to(self, time_s: float) -> None:
         """Set the time, forward or back, within the recording."""
         with self.lock:
-            time_s = min(max(time_s, self._source.start_s), self._source.end_s)
+            time_s = min(max(time_s, self.start_s), self.end_s)
             if time_s < self.time_s:
-                self._restore(time_s)
+                self._go_back(time_s)
             self._advance(time_s)
             self.time_s = time_s
+
+    def _go_back(self, time_s: float) -> None:
+        """Be at some time not after `time_s`."""
+        raise NotImplementedError
+
+    def _advance(self, time_s: float) -> None:
+        """Take all that is new until a time."""
+        raise NotImplementedError
+
+    def command(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        """What an operator asks for, as :meth:`wakeline.live.Session.command`.
+
+        Also ``{"command": "replay", "time_s": ..., "speed": ..., "paused": ...}``, each optional.
+        """
+        with self.lock:
+            try:
+                if command.get("command") == "replay":
+                    return self._replay(command)
+                return self._obey(command)
+            except KeyError as error:
+                return {"ok": False, "error": f"wanted {error.args[0]}"}
+            except (ValueError, TypeError, OverflowError, wl.FilterError) as error:
+                return {"ok": False, "error": str(error)[:200]}
+
+    def _obey(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def _replay(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        if "speed" in command:
+            self.speed = _speed(command["speed"])
+        if "paused" in command:
+            self.paused = bool(command["paused"])
+        if "time_s" in command:
+            wanted_s = float(command["time_s"])
+            if not math.isfinite(wanted_s):
+                raise ValueError("time_s must be finite")
+            self.go_to(wanted_s)
+        return {"ok": True}
+
+    def replay_picture(self) -> dict[str, Any]:
+        """What the picture says of the replay."""
+        names = ("start_s", "end_s", "time_s", "speed", "paused")
+        return {name: getattr(self, name) for name in names}
+
+
+class SessionPlayback(Player):
+    """Plays a session file (``wakeline live --record``) through a session.
+
+    Setting the time back feeds a new session from the beginning, so that the tracks are the same as
+    at first; what the viewer did is gone, but for zones.
+
+    Parameters
+    ----------
+    path : str or Path
+    speed : float
+
+    Raises
+    ------
+    RecordingError
+        When the file is no session.
+    """
+
+    def __init__(self, path: str | Path, *, speed: float = 1.0) -> None:
+        self._path = path
+        first = next(read_session(path))
+        self._config = config_of(first.values["settings"], path)
+        start_s = end_s = first.time_s
+        for record in read_session(path):
+            end_s = max(end_s, record.time_s)
+        super().__init__(start_s, end_s, speed)
+        self._begin()
+        self._advance(start_s)
+
+    def _begin(self) -> None:
+        self._session = Session(replace(self._config, outputs=()))
+        self._session.sweeps.append(self._show)
+        self._records = read_session(self._path)
+        self._next = next(self._records, None)
+
+    def _show(self, *sweeps: Any) -> None:
+        for one in self.sweeps:
+            one(*sweeps)
+
+    def _advance(self, time_s: float) -> None:
+        while self._next is not None and self._next.time_s <= time_s:
+            feed_record(self._session, self._next)
+            self._next = next(self._records, None)
+
+    def _go_back(self, time_s: float) -> None:
+        zones = self._session.watchers[0].alarms.zones
+        self._begin()
+        self._advance(time_s)
+        self._session.watchers[0].alarms.zones.adopt(zones)
+
+    def picture(self) -> dict[str, Any]:
+        """That of the session, with the state of the replay."""
+        with self.lock:
+            return self._session.picture() | {
+                "time_s": self.time_s,
+                "live": False,
+                "replay": self.replay_picture(),
+            }
+
+    def status(self) -> dict[str, Any]:
+        """Of the session."""
+        return self._session.status()
+
+    def _obey(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        return self._session.command(command)
+
+
+class Playback(Player):
+    """Plays a source as a live session: pictures, alarms and commands, and a time that obeys.
+
+    Setting the time back restores a snapshot from before and goes on from there, so that the tracks
+    are the same as at first; what the operator did after the new time is gone.
+
+    Parameters
+    ----------
+    source : Source
+    own : OwnShipMotion, optional
+        Own ship.
+    settings : Settings, optional
+        With the limits of danger.
+    zones : Zones or sequence of Zone, optional
+    config : AlarmConfig, optional
+    log : AlarmLog, optional
+        Receives the changes of alarms, once for each time of the recording.
+    origin_deg : (float, float), optional
+        Latitude and longitude of north 0, east 0.
+    speed : float
+        Seconds of the recording in a second.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        *,
+        own: OwnShipMotion | None = None,
+        settings: Settings | None = None,
+        zones: Zones | Sequence[Zone] = (),
+        config: AlarmConfig | None = None,
+        log: AlarmLog | None = None,
+        origin_deg: tuple[float, float] | None = None,
+        speed: float = 1.0,
+    ) -> None:
+        super().__init__(source.start_s, source.end_s, speed)
+        self._source, self._own, self._log = source, own, log
+        self._logged_s = -math.inf
+        settings = settings or Settings.default()
+        self._board = AlarmBoard(settings.danger_limits, zones, config)
+        self._plane = None
+        if origin_deg is not None:
+            latitude_rad, longitude_rad = np.deg2rad(origin_deg)
+            self._plane = wl.LocalPlane(latitude_rad=latitude_rad, longitude_rad=longitude_rad)
+        self._history: dict[int, deque[tuple[float, float, float]]] = {}
+        self._snapshots: list[tuple[float, bytes]] = []
+        self._spacing_s = _SNAPSHOT_S
+        self._step_s = -math.inf
+        self._keep()
+        self._advance(source.start_s)
+
+    # Time -----------------------------------------------------------------------------------------
 
     def _advance(self, time_s: float) -> None:
         for step_s in self._source.steps(self._step_s, time_s):
@@ -184,7 +312,7 @@ class Playback:
             del self._snapshots[1::2]
             self._spacing_s *= 2.0
 
-    def _restore(self, time_s: float) -> None:
+    def _go_back(self, time_s: float) -> None:
         zones = self._board.alarms.zones
         while len(self._snapshots) > 1 and self._snapshots[-1][0] > time_s:
             self._snapshots.pop()
@@ -210,13 +338,7 @@ class Playback:
                 "ais": [],
                 "plots": self._source.plots_m().tolist(),
                 "status": self.status(),
-                "replay": {
-                    "start_s": self._source.start_s,
-                    "end_s": self._source.end_s,
-                    "time_s": self.time_s,
-                    "speed": self.speed,
-                    "paused": self.paused,
-                },
+                "replay": self.replay_picture(),
             } | self._board.shown()
 
     def status(self) -> dict[str, Any]:
@@ -316,32 +438,8 @@ class Playback:
 
     # The operator ---------------------------------------------------------------------------------
 
-    def command(self, command: Mapping[str, Any]) -> dict[str, Any]:
-        """What an operator asks for, as :meth:`wakeline.live.Session.command`.
-
-        Also ``{"command": "replay", "time_s": ..., "speed": ..., "paused": ...}``, each optional.
-        """
-        with self.lock:
-            try:
-                return self._obey(command)
-            except KeyError as error:
-                return {"ok": False, "error": f"wanted {error.args[0]}"}
-            except (ValueError, TypeError, OverflowError, wl.FilterError) as error:
-                return {"ok": False, "error": str(error)[:200]}
-
     def _obey(self, command: Mapping[str, Any]) -> dict[str, Any]:
         name = command.get("command")
-        if name == "replay":
-            if "speed" in command:
-                self.speed = _speed(command["speed"])
-            if "paused" in command:
-                self.paused = bool(command["paused"])
-            if "time_s" in command:
-                wanted_s = float(command["time_s"])
-                if not math.isfinite(wanted_s):
-                    raise ValueError("time_s must be finite")
-                self.go_to(wanted_s)
-            return {"ok": True}
         if name in ("acquire", "drop", "rename"):
             answer = self._source.command(max(self._step_s, self._source.start_s), command)
             if name == "drop" and answer["ok"]:

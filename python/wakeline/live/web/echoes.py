@@ -26,6 +26,13 @@ class EchoImage:
     ----------
     radar : int
         Number of the radar in messages.
+
+    Attributes
+    ----------
+    range_m, heading_rad : float
+        Of the latest sweeps.
+    written : int
+        Rows so far.
     """
 
     def __init__(self, radar: int = 0) -> None:
@@ -35,6 +42,7 @@ class EchoImage:
         self._version = np.zeros(0, np.int64)
         self._now = 0
         self._last_row = -1
+        self.written = 0
         self._lock = threading.Lock()
 
     def __call__(
@@ -88,6 +96,7 @@ class EchoImage:
         begins = np.flatnonzero(np.diff(row, prepend=-1))
         row = row[begins]
         largest = np.maximum.reduceat(levels, begins, axis=0)
+        self.written += len(row) - int(row[0] == self._last_row)
         if row[0] == self._last_row:
             np.maximum(largest[0], self._levels[row[0]], out=largest[0])
         steps = np.diff(row, prepend=self._last_row if self._last_row >= 0 else row[0]) % rows
@@ -128,11 +137,6 @@ class EchoImage:
             message = head + new.astype("<u2").tobytes() + packed.tobytes()
             return message, int(self._version[new[-1]]), left
 
-    @property
-    def written(self) -> int:
-        """Rows written so far."""
-        return self._now
-
 
 class EchoReader:
     """What one client has seen of an echo image.
@@ -146,19 +150,22 @@ class EchoReader:
     def __init__(self, image: EchoImage, most: int = 256) -> None:
         self._image, self._most = image, most
         self._version = self.gap = 0
+        self._written = self._sent = 0
 
     def next(self) -> bytes:
         """The next message (:meth:`EchoImage.rows_since`); empty when nothing is new."""
-        before = self._version
-        message, self._version, _ = self._image.rows_since(before, self._most)
-        if message and before:
-            count = (len(message) - _HEADER.size) // _row_octets(message)
-            self.gap += max(self._version - before - count, 0)
+        is_first = self._version == 0
+        message, self._version, left = self._image.rows_since(self._version, self._most)
+        if not message:
+            return message
+        count = _HEADER.unpack_from(message)[4]
+        if is_first:
+            self._written = self._image.written - count - left
+        self._sent += count
+        if left == 0:
+            self.gap += max(self._image.written - self._written - self._sent, 0)
+            self._written, self._sent = self._image.written, 0
         return message
-
-
-def _row_octets(message: bytes) -> int:
-    return 2 + _HEADER.unpack_from(message)[3] // 2
 
 
 def _columns(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -68,15 +68,12 @@ class WebApp:
     ----------
     session : object
         With ``picture() -> dict``, ``command(dict) -> dict``, ``sweeps`` (a list of callables for
-        radar, azimuth_rad, heading_rad, range_m and cells), and optionally ``status() -> dict`` and
-        ``metrics() -> str``. If it has a ``lock``, it is called on other threads, with its lock
-        held; else on the loop.
+        radar, azimuth_rad, heading_rad, range_m and cells), ``lock``, which is held in each call,
+        and optionally ``status() -> dict`` and ``metrics() -> str``.
     host, port : str, int
         Port 0 takes a free one.
     token : str, optional
         Asked of every client; by default a new one for any address but this machine's, none there.
-    command : callable, optional
-        Does what operators ask for, instead of ``session.command``.
 
     Attributes
     ----------
@@ -96,8 +93,6 @@ class WebApp:
         host: str = "127.0.0.1",
         port: int = 8080,
         token: str | None = None,
-        *,
-        command: Callable[[Mapping[str, Any]], Any] | None = None,
     ) -> None:
         if not is_local(host) and token is None:
             token = secrets.token_urlsafe(16)
@@ -105,8 +100,6 @@ class WebApp:
         self.clients = 0
         self.octets_sent = 0
         self._session = session
-        self._obey = command or session.command
-        self._lock = getattr(session, "lock", None)
         self._images: dict[str, EchoImage] = {}
         self._scene = Scene()
         self._signal_k = SignalK(self)
@@ -219,12 +212,10 @@ class WebApp:
         return shown
 
     async def _call(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Call the session, where and as it wants."""
-        if self._lock is None:
-            return function(*arguments)
+        """Call the session, on a thread: it may be busy."""
 
         def locked() -> Any:
-            with self._lock:
+            with self._session.lock:
                 return function(*arguments)
 
         return await asyncio.to_thread(locked)
@@ -232,7 +223,7 @@ class WebApp:
     async def command(self, command: Mapping[str, Any]) -> dict[str, Any]:
         """The answer to a command; whatever a client sends, nothing is raised."""
         try:
-            answer = await self._call(self._obey, command)
+            answer = await self._call(self._session.command, command)
         except Exception as error:  # noqa: BLE001
             answer = {"ok": False, "error": f"{type(error).__name__}: {error}"[:200]}
         self._taken_s = 0.0
@@ -422,24 +413,15 @@ async def _receive(
             await receive(message.data)
 
 
-async def serve(
-    service: Any, host: str = "127.0.0.1", port: int = 8080, token: str | None = None
-) -> WebApp:
-    """Serve the session of a service on its loop; commands go through the service."""
-    app = WebApp(service.session, host, port, token, command=service.command)
-    await app.start()
-    return app
-
-
 class WebServer:
     """Serves a session on a thread of its own: a :class:`WebApp` with an event loop.
 
     Parameters
     ----------
-    session : object
-        With a ``lock``: :class:`WebApp`.
+    session : Session or Playback
+        What :class:`WebApp` needs.
     host, port, token
-        The same.
+        As there.
 
     Attributes
     ----------
@@ -491,6 +473,13 @@ class WebServer:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
+
+
+def serve(
+    session: Any, host: str = "127.0.0.1", port: int = 8080, token: str | None = None
+) -> WebServer:
+    """Serve a session: :class:`WebServer`."""
+    return WebServer(session, host, port, token)
 
 
 def is_local(host: str) -> bool:

@@ -108,7 +108,8 @@ export class Echoes {
     return 1 + (Math.floor(time_s) % ROUNDS_S);
   }
 
-  take(buffer, threshold, time_s, own) {
+  /** Take a message; `placeOf` a radar's number is {north, east}. */
+  take(buffer, threshold, time_s, placeOf) {
     const view = new DataView(buffer);
     if (view.byteLength < HEADER || view.getUint8(0) !== 1) return;
     const [number, rows, columns, count] = [view.getUint8(1), view.getUint16(2, true), view.getUint16(4, true), view.getUint16(6, true)];
@@ -119,7 +120,8 @@ export class Echoes {
       radar = new Radar(rows, columns, range_m);
       this.radars.set(number, radar);
     }
-    radar.take(view, count, threshold, Echoes.stamp(time_s), [own.north, own.east]);
+    const place = placeOf(number);
+    radar.take(view, count, threshold, Echoes.stamp(time_s), [place.north, place.east]);
     this.changed = true;
   }
 
@@ -129,19 +131,20 @@ export class Echoes {
   }
 
   /** Draw what differs from what is shown: new rows, another view, and trails once a second. */
-  draw(view, settings, palette, time_s, own) {
+  draw(view, settings, palette, time_s, placeOf) {
     const { canvas } = this.painter;
-    const [north, east] = [view.center[0] - own.north, view.center[1] - own.east];
-    const moved = settings.trails === "true" ? [own.north, own.east] : [];
+    const radars = [...this.radars].map(([number, radar]) => [number, radar, placeOf(number)]);
+    const moved = radars.flatMap(([, , { north, east }]) => [view.center[0] - north, view.center[1] - east]);
+    if (settings.trails === "true") moved.push(...view.center);
     const key = [
-      ...[north, east, ...moved].map((v) => (v * view.scale * 2).toFixed(0)),
+      ...moved.map((v) => (v * view.scale * 2).toFixed(0)),
       view.rotation.toFixed(4), view.range_m, ...view.middle, canvas.width, canvas.height,
       settings.gain, settings.trails, settings.trailMinutes, palette.background,
       this.radars.size && settings.trails !== "off" ? Math.floor(time_s) : 0,
     ].join();
     if (!this.changed && key === this.key) return;
     this.key = key;
-    this.painter.draw([...this.radars.entries()], view, settings, palette, Echoes.stamp(time_s), own);
+    this.painter.draw(radars, view, settings, palette, Echoes.stamp(time_s));
     this.changed = false;
   }
 
@@ -329,7 +332,7 @@ class GlPainter {
     gl.clear(gl.COLOR_BUFFER_BIT);
   }
 
-  draw(radars, view, settings, palette, now, own) {
+  draw(radars, view, settings, palette, now) {
     const { gl, places, canvas } = this;
     if (gl.isContextLost()) return;
     const ratio = canvas.width / view.width;
@@ -349,15 +352,15 @@ class GlPainter {
     gl.uniform3fv(places.ramp, palette.echoes.flat().map((v) => v / 255));
     gl.uniform3fv(places.trail, palette.trail.map((v) => v / 255));
     gl.uniform3fv(places.background, rgb(palette.background).map((v) => v / 255));
-    radars.forEach(([number, radar], k) => {
+    radars.forEach(([number, radar, place], k) => {
       this.upload(number, radar);
       if (k > 0) {
         gl.enable(gl.BLEND);
         gl.blendEquation(gl.MAX);
       }
       const window_m = radar.cell_m * TRUE_CELLS;
-      const ground = [own.north, own.east].map((v) => ((v % window_m) + window_m) % window_m);
-      gl.uniform2f(places.center, view.center[0] - own.north, view.center[1] - own.east);
+      const ground = [place.north, place.east].map((v) => ((v % window_m) + window_m) % window_m);
+      gl.uniform2f(places.center, view.center[0] - place.north, view.center[1] - place.east);
       gl.uniform2f(places.ground, ...ground);
       gl.uniform1f(places.range, radar.range_m);
       gl.uniform1f(places.cell, radar.cell_m);
@@ -407,7 +410,8 @@ class PlainPainter {
     this.context.fillRect(0, 0, this.canvas.width, this.canvas.height);
   }
 
-  draw(radars, view, settings, palette, now, own) {
+  /** The radar with the largest range alone: what a page can do without WebGL. */
+  draw(radars, view, settings, palette, now) {
     const { canvas, context } = this;
     if (!radars.length) {
       this.blank(palette);
@@ -415,9 +419,9 @@ class PlainPainter {
     }
     context.fillStyle = palette.beyond;
     context.fillRect(0, 0, canvas.width, canvas.height);
-    const [, radar] = radars[0];
+    const [, radar, place] = radars.reduce((a, b) => (b[1].range_m > a[1].range_m ? b : a));
     const [width, height] = [Math.ceil(view.width / 1.5), Math.ceil(view.height / 1.5)];
-    this.table(radar, view, width, height, [view.center[0] - own.north, view.center[1] - own.east]);
+    this.table(radar, view, width, height, [view.center[0] - place.north, view.center[1] - place.east]);
     if (this.image?.width !== width || this.image?.height !== height) this.image = new ImageData(width, height);
     const pixels = new Uint32Array(this.image.data.buffer);
     const packed = ([r, g, b]) => (255 << 24) | (b << 16) | (g << 8) | r;
@@ -446,16 +450,16 @@ class PlainPainter {
       }
       pixels[at] = dark;
       if (settings.trails === "off") continue;
-      let place = k;
+      let cell = k;
       if (fixed) {
         const [y, x] = [Math.floor(at / width), at % width];
         const [dn, de] = view.turnedBack((x + 0.5 - mx) * metres, (my - y - 0.5) * metres);
         const north = Math.floor((view.center[0] + dn) / radar.cell_m) & (TRUE_CELLS - 1);
         const east = Math.floor((view.center[1] + de) / radar.cell_m) & (TRUE_CELLS - 1);
-        place = north * TRUE_CELLS + east;
+        cell = north * TRUE_CELLS + east;
       }
-      const age = now - stamps[place];
-      if (stamps[place] && age >= 0 && age < length_s) pixels[at] = trail[Math.floor(15.99 * (1 - age / length_s))];
+      const age = now - stamps[cell];
+      if (stamps[cell] && age >= 0 && age < length_s) pixels[at] = trail[Math.floor(15.99 * (1 - age / length_s))];
     }
     this.scratch ??= document.createElement("canvas");
     if (this.scratch.width !== width || this.scratch.height !== height) Object.assign(this.scratch, { width, height });

@@ -97,7 +97,7 @@ const link = new Link({
     changed();
   },
   onEchoes: (buffer) => {
-    echoes.take(buffer, settings.gain, store.now(performance.now()), own());
+    echoes.take(buffer, settings.gain, store.now(performance.now()), placeOf(own()));
     if (!fitted) fit();
     changed();
   },
@@ -112,6 +112,13 @@ const link = new Link({
     changed();
   },
 });
+
+/** Where the antenna of an echo image is: ashore, or aboard own ship. */
+const placeOf = (here) => (number) => {
+  const radar = store.radars.find((one) => one.image === number);
+  const ashore = radar && radar.aboard === false && Number.isFinite(radar.north_m);
+  return ashore ? { north: radar.north_m, east: radar.east_m } : here;
+};
 
 const own = () => store.ownAt(store.now(performance.now()));
 
@@ -576,7 +583,7 @@ function frame(now_ms) {
   view.follow(here);
   const palette = PALETTES[settings.palette];
   const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed };
-  if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, here);
+  if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, placeOf(here));
   else echoes.blank(palette);
   overlay.draw(scene);
   placeCard();
