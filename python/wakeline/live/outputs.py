@@ -70,10 +70,7 @@ class JsonOutput(Output):
             self._send(track_line(values, radar))
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
-        is_alarm = event.get("kind") == "alarm"
-        self._send(
-            write_line("alarm", {"alarm": event}) if is_alarm else write_line("event", event)
-        )
+        self._send(write_line(event.get("type", "event"), event))
 
 
 class WireOutput(Output):
