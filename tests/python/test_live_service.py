@@ -15,7 +15,13 @@ import pytest
 
 import wakeline as wl
 from wakeline.cli import main
-from wakeline.live.config import InputConfig, LiveConfig, OutputConfig, RadarConfig
+from wakeline.live.config import (
+    InputConfig,
+    LiveConfig,
+    OutputConfig,
+    RadarConfig,
+    SessionConfig,
+)
 from wakeline.live.network import NetworkInput, NetworkOutput
 from wakeline.live.record import Recorder, at_microsecond, read_session, segments_of
 from wakeline.live.service import Service, feed_record
@@ -257,6 +263,27 @@ def test_segments_are_rotated_within_the_cap(tmp_path):
     assert times == [float(k) for k in range(500 - len(times), 500)]
 
 
+def test_a_later_segment_alone_keeps_the_numbers(tmp_path):
+    path = tmp_path / "s.pcap"
+    limits = SessionConfig(segment_mb=0.01, most_mb=0.03)
+    config = LiveConfig(radars=(ASHORE,), session=limits)
+    service = Service(wl.live.Session(config), path)
+    service._begin()
+    for k in range(120):
+        t, octets = turn(k, time.time() + 1.0)
+        service._feed("x", [(t, octets)])
+    service.close()
+    whole = {one.track_id: one for one in service.session.tracker.tracks()}
+    assert not path.exists()
+    again = Service(wl.live.Session(config), path)
+    again._begin()
+    again.close()
+    tracks = {one.track_id: one for one in again.session.tracker.tracks()}
+    assert tracks.keys() == whole.keys()
+    for number, track in tracks.items():
+        assert track.mean == whole[number].mean
+
+
 def test_another_file_is_no_session(tmp_path):
     (tmp_path / "x.pcap").write_bytes(b"nothing")
     for name in ("x.pcap", "missing.pcap"):
@@ -322,7 +349,7 @@ def test_a_killed_process_goes_on_with_the_same_numbers(tmp_path):
                 for k in range(first, first + 15):
                     sender.sendall(turn(k, begin_s, 0.2)[1])
                     time.sleep(0.1)
-                last = f'"time_s":{begin_s + 0.2 * k}'
+                last = f'"time_s":{begin_s + 0.2 * k:.6f}'
                 until(lambda last=last: last in read_tracks(tmp_path), 10.0)
         finally:
             process.kill()

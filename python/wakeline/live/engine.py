@@ -200,6 +200,15 @@ class TrackEngine:
         """Name a track; False if there is none with that number."""
         return self._tracker.rename(track_id, name)
 
+    def save(self) -> bytes:
+        """The state, for `restore`."""
+        return self._tracker.save()
+
+    def restore(self, state: bytes) -> None:
+        """Continue from a state; ValueError if it is that of another tracker."""
+        self._tracker.restore(state)
+        self._last_s = [self.time_s] * len(self.radars)
+
     def report(self, **report: Any) -> list[dict[str, Any]]:
         """Take a position report with an identity; the events of tracks."""
         return []

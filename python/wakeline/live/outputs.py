@@ -45,6 +45,13 @@ class Output:
     def event(self, session: Session, event: dict[str, Any]) -> None:
         """Send an event."""
 
+    def save(self) -> bytes:
+        """The numbers of its targets, empty if it has none."""
+        return b""
+
+    def restore(self, session: Session, state: bytes) -> None:
+        """Continue with numbers that were saved."""
+
     def _send(self, octets: bytes) -> None:
         self.messages += 1
         self.octets += len(octets)
@@ -98,6 +105,13 @@ class WireOutput(Output):
         }
         for octets in self._feed.update(session.time_s, **columns, **self._more(session)):
             self._send(octets)
+
+    def save(self) -> bytes:
+        return b"" if self._feed is None else self._feed.save()
+
+    def restore(self, session: Session, state: bytes) -> None:
+        self._feed = self._make(session)
+        self._feed.restore(state)
 
     def _make(self, session: Session) -> Any:
         """The feed."""

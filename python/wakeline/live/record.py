@@ -3,7 +3,8 @@
 Each record is a UDP packet with its receive time. Data of input number `k` go to the address
 127.1.0.k (and so on) and the port of the input; octets of a stream are a packet for each piece.
 Records of the session itself go to 127.0.0.1 port 0 as JSON: the settings at the start of each
-segment, the names of the inputs, and what operators did.
+segment, the names of the inputs, and what operators did. A later segment begins with the state of
+the session, so that it can be replayed alone.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import json
 import os
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
@@ -38,7 +39,7 @@ class Record(NamedTuple):
         Name of the input; empty for the session's own.
     octets : bytes
     values : dict or None
-        Of the session's own: ``settings``, ``command``, ``clock``.
+        Of the session's own: ``settings``, ``state``, ``command``, ``clock``.
     """
 
     time_s: float
@@ -67,6 +68,8 @@ class Recorder:
         Settings of the session, written at the start of each segment.
     segment_octets, most_octets : int
         Size at which a new segment begins, and of all segments before the oldest is removed.
+    state : callable, optional
+        Gives the state of the session, written at the start of each segment but the first.
     """
 
     def __init__(
@@ -75,8 +78,9 @@ class Recorder:
         settings: dict[str, Any],
         segment_octets: int = 256 << 20,
         most_octets: int = 4096 << 20,
+        state: Callable[[], dict[str, Any]] | None = None,
     ) -> None:
-        self.path, self._settings = Path(path), settings
+        self.path, self._settings, self._state = Path(path), settings, state
         self._segment_octets, self._most_octets = segment_octets, most_octets
         self._inputs: dict[str, tuple[int, int]] = {}
         self._time_s = 0.0
@@ -101,11 +105,11 @@ class Recorder:
 
     def data(self, time_s: float, name: str, url: str, octets: bytes) -> None:
         """Write octets of an input."""
+        if self.octets > self._segment_octets:
+            self._rotate(time_s)
         number, port = self._inputs.get(name) or self._add_input(time_s, name, url)
         for begin in range(0, max(len(octets), 1), _LONGEST):
             self._packet(time_s, number, port, octets[begin : begin + _LONGEST])
-        if self.octets > self._segment_octets:
-            self._rotate(time_s)
 
     def command(self, time_s: float, command: dict[str, Any]) -> None:
         """Write what an operator did."""
@@ -133,6 +137,8 @@ class Recorder:
 
     def _own(self, time_s: float, values: dict[str, Any]) -> None:
         octets = json.dumps(values, separators=(",", ":")).encode()
+        if len(octets) % _LONGEST == 0:
+            octets += b" "
         for begin in range(0, len(octets), _LONGEST):
             self._packet(time_s, 0, 0, octets[begin : begin + _LONGEST])
 
@@ -160,6 +166,8 @@ class Recorder:
         self._number += 1
         self._open(_segment(self.path, self._number))
         self.begin(time_s)
+        if self._state is not None:
+            self._own(time_s, {"state": self._state()})
         inputs, self._inputs = self._inputs, {}
         for name, (number, port) in inputs.items():
             self._inputs[name] = number, port
@@ -181,8 +189,8 @@ def segments_of(path: str | Path) -> list[Path]:
     return ([path] if path.exists() else []) + found
 
 
-def read_session(path: str | Path) -> Iterator[Record]:
-    """The records of a session file and of the segments that follow it.
+def read_session(path: str | Path, *, last_segment: bool = False) -> Iterator[Record]:
+    """The records of a session file and of the segments that follow it, or of the last one.
 
     Raises
     ------
@@ -193,6 +201,7 @@ def read_session(path: str | Path) -> Iterator[Record]:
     segments = segments_of(path) if path.parent.is_dir() else []
     if not segments:
         raise RecordingError(path, "there is no such file", wanted="a session file")
+    segments = segments[-1:] if last_segment else segments
     names: dict[str, str] = {}
     pending = b""
     is_session = False

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .network import NetworkInput, NetworkOutput, close_all
-from .record import Record, Recorder, at_microsecond, read_session
+from .record import Record, Recorder, at_microsecond, read_session, segments_of
 from .session import CLOCK, Session
 
 _TICK_S = 0.5
@@ -26,8 +26,8 @@ class Service:
     ----------
     session : Session
     record : str or Path, optional
-        File to record to. If it exists, the session first continues from it: its records are fed
-        again, so that tracks keep their numbers.
+        File to record to. If it exists, the session first continues from it: the records of its
+        last segment are fed again, so that tracks keep their numbers.
 
     Attributes
     ----------
@@ -99,8 +99,8 @@ class Service:
     def _begin(self) -> None:
         if self._record is not None:
             path = Path(self._record)
-            if path.exists() and path.stat().st_size > 0:
-                for record in read_session(path):
+            if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
+                for record in read_session(path, last_segment=True):
                     feed_record(self.session, record)
             limits = self.session.config.session
             self._recorder = Recorder(
@@ -108,6 +108,7 @@ class Service:
                 self.session.config.as_document(),
                 round(limits.segment_mb * 1e6),
                 round(limits.most_mb * 1e6),
+                self.session.save,
             )
             self._recorder.begin(max(at_microsecond(time.time()), self.session.time_s))
         self.session.journal = self._journal
@@ -172,6 +173,9 @@ def feed_record(session: Session, record: Record) -> None:
         session.feed(record.time_s, record.input, record.octets)
     elif "command" in record.values:
         session.command(record.values["command"], record.time_s)
+    elif "state" in record.values:
+        if session.time_s == -math.inf:
+            session.restore(record.values["state"])
     elif "clock" in record.values:
         session.feed(record.time_s, CLOCK, b"")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 import threading
 from collections import deque
@@ -709,6 +710,33 @@ class Session:
         """The status as text for Prometheus."""
         return metrics_of(self.status())
 
+    def save(self) -> dict[str, Any]:
+        """The state of tracks and of the numbers of outputs, ready for JSON.
+
+        Sources of own ship, AIS and detection in video are not in it; they are found again from
+        what is fed.
+        """
+        numbers = {name: one.save() for name, one in self.outputs.items()}
+        return {
+            "time_s": self.time_s if math.isfinite(self.time_s) else 0.0,
+            "origin_deg": self.origin_deg,
+            "tracker": _text(self.tracker.save()),
+            "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Continue from a state; ValueError if it is not that of a session like this one."""
+        try:
+            self.tracker.restore(base64.b64decode(state["tracker"]))
+            if state["origin_deg"] is not None:
+                self._set_origin(*map(float, state["origin_deg"]))
+            self.time_s = float(state["time_s"])
+            for name, text in state["outputs"].items():
+                if name in self.outputs:
+                    self.outputs[name].restore(self, base64.b64decode(text))
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError(f"the state is not that of a session ({error})") from None
+
     # ------------------------------------------------------------------ operators
 
     def command(self, command: Mapping[str, Any], time_s: float | None = None) -> dict[str, Any]:
@@ -828,6 +856,10 @@ def _velocity(values: Mapping[str, float]) -> tuple[float, float]:
 def _with_true_bearings(own: OwnShip) -> OwnShip:
     """The antenna of a radar that gives true bearings: its errors of heading are the radar's."""
     return OwnShip(**(own.as_dict() | {"heading_std_rad": 0.0}))
+
+
+def _text(octets: bytes) -> str:
+    return base64.b64encode(octets).decode()
 
 
 def _answer(good: bool, error: str) -> dict[str, Any]:
