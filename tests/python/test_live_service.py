@@ -168,6 +168,15 @@ def test_an_output_serves_clients_and_drops_for_one_that_does_not_read():
     reader.close()
 
 
+def test_a_flood_is_dropped_and_counted():
+    service = Service(wl.live.Session())
+    for _ in range(3000):
+        service.take("x", [(0.0, bytes(60000))])
+    assert 0 < service.lost < 3000
+    service.close()
+    assert service.session.status()["lost_batches"] == service.lost
+
+
 # ------------------------------------------------------------------ sessions
 
 

@@ -264,9 +264,7 @@ def test_scans_count_by_how_many_samples_they_have():
 
 @pytest.mark.parametrize("samples", [[50, 50], 10.5, np.nan, np.inf, -3, [50, -1, 50]])
 def test_samples_that_are_no_counts_are_rejected_by_name(samples):
-    with pytest.raises(
-        ValueError, match=r"samples must be integers, .* of shape \(\) or \(3,\)"
-    ):
+    with pytest.raises(ValueError, match=r"samples must be integers, .* of shape \(\) or \(3,\)"):
         metrics.share_inside(np.ones(3), 2, samples)
 
 

@@ -117,6 +117,16 @@ class AisVessel:
         """Standard deviation of its position, per axis."""
         return 5.0 if self.accurate else 10.0
 
+    @property
+    def to_middle_m(self) -> tuple[float, float]:
+        """[north, east] from its position to the middle of the hull; 0 while unknown."""
+        forward_m = 0.5 * (self.to_bow_m - self.to_stern_m)
+        starboard_m = 0.5 * (self.to_starboard_m - self.to_port_m)
+        if not math.isfinite(forward_m + starboard_m + self.heading_rad):
+            return 0.0, 0.0
+        cos, sin = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        return forward_m * cos - starboard_m * sin, forward_m * sin + starboard_m * cos
+
     def as_dict(self) -> dict[str, Any]:
         """Its values by name."""
         return asdict(self)

@@ -35,6 +35,10 @@ class LiveTrack:
     mode_probability : tuple of float
     existence : float
     hits, misses : int
+    identity : str
+        Of the vessel that reports from the track, such as its MMSI; empty without one.
+    identity_probability, identity_time_s : float
+        How probable that is, and the time of its last report.
     """
 
     track_id: int
@@ -47,6 +51,9 @@ class LiveTrack:
     existence: float
     hits: int
     misses: int
+    identity: str = ""
+    identity_probability: float = 0.0
+    identity_time_s: float = math.nan
 
     @property
     def north_m(self) -> float:
@@ -184,6 +191,7 @@ class TrackEngine:
             table.existence[which].tolist(),
             table.hits[which].tolist(),
             table.misses[which].tolist(),
+            *_identities(table, which),
             strict=True,
         )
         yield from (LiveTrack(*values) for values in columns)
@@ -210,8 +218,27 @@ class TrackEngine:
         self._last_s = [self.time_s] * len(self.radars)
 
     def report(self, **report: Any) -> list[dict[str, Any]]:
-        """Take a position report with an identity; the events of tracks."""
+        """Take a position report with an identity; the events of tracks.
+
+        The arguments are those of ``Tracker.report``; velocities that are not finite are unknown.
+        """
+        if not hasattr(self._tracker, "report"):
+            return []
+        if not math.isfinite(report["vnorth_mps"] + report["veast_mps"]):
+            report |= {"vnorth_mps": None, "veast_mps": None}
+        return _events(self._tracker.report(**report).events)
+
+
+def _identities(table: wl.track.TrackTable, which: np.ndarray) -> list[list[Any]]:
+    """Columns of identity, its probability and the time of its last report."""
+    if not hasattr(table, "identity"):
         return []
+    names = table.identity
+    return [
+        [names[k] for k in which.tolist()],
+        table.identity_probability[which].tolist(),
+        table.identity_time_s[which].tolist(),
+    ]
 
 
 def _events(events: Sequence[wl.Event]) -> list[dict[str, Any]]:
@@ -222,6 +249,7 @@ def _events(events: Sequence[wl.Event]) -> list[dict[str, Any]]:
             "time_s": event.time_s,
             "reason": event.reason,
         }
+        | ({"identity": event.identity} if getattr(event, "identity", "") else {})
         for event in events
         if event.track_id > 0
     ]

@@ -137,7 +137,8 @@ _TRACK = (
     '"north_m":%.3f,"east_m":%.3f,"vnorth_mps":%.5f,"veast_mps":%.5f,'
     f'"covariance":[{_ROW},{_ROW},{_ROW},{_ROW}],'
     '"course_rad":%.6f,"speed_mps":%.5f,"mode":"%s","mode_probability":[%s],"existence":%.6g,'
-    '"hits":%d,"misses":%d%s%s%s,"radar":%s}\n'
+    '"hits":%d,"misses":%d,"identity":%s,"identity_probability":%.5g,"identity_time_s":%s'
+    '%s%s%s,"radar":%s}\n'
 )
 _PLACE = ',"latitude_deg":%.9f,"longitude_deg":%.9f'
 _SEEN = ',"range_m":%.3f,"bearing_rad":%.7f'
@@ -164,6 +165,9 @@ def track_line(track: Mapping[str, Any], radar: str) -> bytes:
         track["existence"],
         track["hits"],
         track["misses"],
+        _ENCODER.encode(track["identity"]),
+        track["identity_probability"],
+        "null" if track["identity_time_s"] is None else f"{track['identity_time_s']:.3f}",
         _PLACE % (track["latitude_deg"], track["longitude_deg"]) if "latitude_deg" in track else "",
         _SEEN % (track["range_m"], track["bearing_rad"]) if "range_m" in track else "",
         _CPA % (cpa["cpa_m"], cpa["tcpa_s"], cpa["probability"]) if cpa else "",

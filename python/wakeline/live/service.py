@@ -16,7 +16,7 @@ from .record import Record, Recorder, at_microsecond, read_session, segments_of
 from .session import CLOCK, Session
 
 _TICK_S = 0.5
-_MOST_WAITING = 20_000  # batches that the session has not taken
+_MOST_WAITING = 128 << 20  # octets that the session has not taken
 
 
 class Service:
@@ -46,19 +46,24 @@ class Service:
         self.outputs = [NetworkOutput(one) for one in session.config.outputs]
         self.lost = 0
         self.ends = threading.Event()
-        self._waiting: queue.Queue[tuple[str, list[tuple[float, bytes]]]] = queue.Queue(
-            _MOST_WAITING
+        self._waiting: queue.SimpleQueue[tuple[str, list[tuple[float, bytes]]]] = (
+            queue.SimpleQueue()
         )
+        self._waiting_octets = 0
+        self._counting = threading.Lock()
         self._recorder: Recorder | None = None
         self._record = record
         self._tick_s = -math.inf
 
     def take(self, name: str, messages: list[tuple[float, bytes]]) -> None:
         """Take messages of an input, from any thread."""
-        try:
-            self._waiting.put_nowait((name, messages))
-        except queue.Full:
-            self.lost += 1
+        octets = sum(len(one) for _, one in messages)
+        with self._counting:
+            if self._waiting_octets > _MOST_WAITING:
+                self.lost += 1
+                return
+            self._waiting_octets += octets
+        self._waiting.put((name, messages))
 
     def _journal(self, command: Mapping[str, Any]) -> float:
         """Record what an operator asks for; its time."""
@@ -138,6 +143,8 @@ class Service:
 
     def _feed(self, name: str, messages: list[tuple[float, bytes]]) -> None:
         session, recorder = self.session, self._recorder
+        with self._counting:
+            self._waiting_octets -= sum(len(one) for _, one in messages)
         with session.lock:
             for when_s, octets in messages:
                 time_s = max(at_microsecond(when_s), session.time_s)

@@ -41,6 +41,8 @@ _PUBLISH_S = 0.03, 60e-6  # between reports of tracks: least, and for each track
 _WIDE_RAD = 1.0  # a sector after which they are reported at once
 _WATCH_S = 0.5  # between looks for alarms
 _PASS_S = 0.02  # between looks at what happens by time alone
+_DISAGREE = ("identity_disagrees", "identity_jumps", "identity_shared")
+_DISAGREE_S = 60.0  # a disagreement that is not stated again is over
 _HISTORY = 60  # past positions of a track in the picture
 _HISTORY_S = 5.0
 _MOST_EVENTS = 500
@@ -144,6 +146,7 @@ class Session:
         self._watched_s = self._published_s = -math.inf
         self._unpublished = ""  # the radar of sectors whose tracks are not reported yet
         self.news: list[dict[str, Any]] = []
+        self._disagree: dict[tuple[int, str], float] = {}
         self._edge_rad: dict[str, float] = {}
         if self.config.session.origin_deg:
             self._set_origin(*self.config.session.origin_deg)
@@ -206,7 +209,7 @@ class Session:
     def _take(self, time_s: float, source: Source, kind: str, values: Any) -> None:
         try:
             getattr(self, f"_take_{kind}")(time_s, source, values)
-        except wl.FilterError as error:
+        except (wl.FilterError, ValueError) as error:
             source.problems.add("tracker", str(error))
 
     def _take_own(self, time_s: float, source: Source, reading: Any) -> None:
@@ -252,6 +255,8 @@ class Session:
         if self.plane is None:
             return
         north_m, east_m = self.to_plane(vessel.latitude_deg, vessel.longitude_deg)
+        to_middle = vessel.to_middle_m
+        north_m, east_m = north_m + to_middle[0], east_m + to_middle[1]
         speed, course = vessel.speed_mps, vessel.course_rad
         self._report(
             source="ais",
@@ -525,7 +530,20 @@ class Session:
     def _tracker_events(self, events: Sequence[dict[str, Any]]) -> None:
         for event in events:
             self.news.append(event)
+            key = event["track_id"], event.get("identity", "")
+            if event["event"] in _DISAGREE:
+                self._disagree[key] = event["time_s"]
+            elif event["event"] in ("identified", "identity_lost"):
+                self._disagree.pop(key, None)
             self._event(event)
+
+    def disagreements(self) -> list[tuple[int, str, str]]:
+        """Tracks whose reports are not where their echoes are: number, identity, and what is so."""
+        now_s = self.tracker.time_s
+        self._disagree = {
+            key: when_s for key, when_s in self._disagree.items() if now_s - when_s < _DISAGREE_S
+        }
+        return [(*key, "its reports are far from its echo") for key in self._disagree]
 
     def _event(self, event: dict[str, Any]) -> None:
         self.events.append(event)
@@ -572,6 +590,9 @@ class Session:
                 "existence": track.existence,
                 "hits": track.hits,
                 "misses": track.misses,
+                "identity": track.identity,
+                "identity_probability": track.identity_probability,
+                "identity_time_s": track.identity_time_s if track.identity else None,
             }
             | place
             | more
