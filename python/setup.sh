@@ -1,7 +1,7 @@
 # Sourced by python/demo.sh and tests/run.sh: makes the checkout ready to use on a bare Debian or Ubuntu machine.
 #
 #   source setup.sh demo     a compiler, CMake, Eigen and the Python package with its plots
-#   source setup.sh tests    the same, the C++ test libraries, ccache and the Python test tools
+#   source setup.sh tests    the same, the C++ test libraries, ccache, the Python test tools and, on Debian, a browser
 #   source setup.sh sanitize as tests, and clang 14 with its sanitizers
 #
 # Installs with apt what is missing and nothing else, keeps everything of its own in build/, and leaves in the
@@ -18,6 +18,8 @@ fail() { say "$*"; exit 1; }
 
 # --- what the machine must have -------------------------------------------------------------------------------------
 
+# Ubuntu has its browser as a snap alone; there the tests of the screen are skipped.
+is_debian() { grep -qs '^ID=debian$' /etc/os-release; }
 has_cmake() { cmake --version >/dev/null 2>&1; }
 has_make() { ninja --version >/dev/null 2>&1 || make --version >/dev/null 2>&1; }
 has_header() { [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]]; }
@@ -67,6 +69,10 @@ missing_packages() {
     has_header gtest/gtest.h || echo libgtest-dev
     has_header benchmark/benchmark.h || echo libbenchmark-dev
     has_header nlohmann/json.hpp || echo nlohmann-json3-dev
+    if is_debian; then
+      command -v chromium >/dev/null || echo chromium
+      command -v chromedriver >/dev/null || echo chromium-driver
+    fi
     command -v tshark >/dev/null || echo tshark
     command -v gpsbabel >/dev/null || echo gpsbabel
     command -v ogrinfo >/dev/null || echo gdal-bin

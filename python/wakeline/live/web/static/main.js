@@ -16,7 +16,7 @@ const BLINK_MS = 500;
 const FRAME_MS = 40;
 const TRAIL_MINUTES = [1, 3, 6, 15, 30];
 const VECTOR_MINUTES = [1, 3, 6, 12, 30];
-const SPEEDS = [0.5, 1, 2, 5, 10, 20, 50];
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 10, 20, 50];
 const DEFAULTS = {
   up: "north", motion: "relative", vectors: "true", vectorMinutes: 6, trails: "true", trailMinutes: 6,
   palette: "day", units: "nautical", gain: 4, gl: true,
@@ -237,23 +237,27 @@ function fillCard() {
   list.replaceChildren(...rows.flatMap(([term, text]) => [element("dt", { text: term }), element("dd", { text })]));
 }
 
-/** Beside its target or place, and inside the picture. */
+/** The card of a place is beside it; that of a target at the side of the picture where it is not. */
 function placeCard() {
   const card = byId("card");
   if (card.hidden) return;
-  let at = null;
-  if (offered) at = view.toScreen(...offered);
-  else {
+  const [width, height] = [card.offsetWidth, card.offsetHeight];
+  const right = view.width - width - 10;
+  const lowest = view.height - view.bottom - height;
+  let [x, y] = [right, byId("own").offsetTop + byId("own").offsetHeight + 10];
+  if (offered) {
+    const at = view.toScreen(...offered);
+    x = at[0] + 28 <= right ? at[0] + 28 : at[0] - 28 - width;
+    y = at[1] - 40;
+  } else {
     const track = store.tracks.get(selected);
     if (!track) return;
     const place = store.at(track, store.now(performance.now()));
-    at = view.toScreen(place.north, place.east);
+    const at = view.toScreen(place.north, place.east);
+    if (at[0] > right - 30 && at[1] > y - 30 && at[1] < y + height + 30) x = byId("tools").offsetWidth + 20;
   }
-  const [width, height] = [card.offsetWidth, card.offsetHeight];
-  const x = at[0] + 28 + width < view.width ? at[0] + 28 : Math.max(8, at[0] - 28 - width);
-  const y = Math.max(view.top + 6, Math.min(at[1] - 40, view.height - height - 8));
-  card.style.left = `${Math.min(x, view.width - width - 8)}px`;
-  card.style.top = `${y}px`;
+  card.style.left = `${Math.max(8, Math.min(x, right))}px`;
+  card.style.top = `${Math.max(view.top + 6, Math.min(y, lowest))}px`;
 }
 
 /** A click where there is no target. */
@@ -350,7 +354,13 @@ const tools = new Tools(byId("overlay"), {
 });
 
 const panel = new Panel({
-  onSelect: (id) => select(id),
+  onSelect: (id) => {
+    const track = store.tracks.get(id);
+    if (!track) return;
+    const place = store.at(track, store.now(performance.now()));
+    view.show(place.north, place.east);
+    select(id);
+  },
   onCommand: command,
   onZoneEdit: editZone,
 });

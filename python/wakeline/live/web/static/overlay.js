@@ -38,10 +38,7 @@ export class Overlay {
     if (settings.show.past) for (const one of targets) this.drawPast(one);
     for (const one of targets) this.drawVector(one);
     if (settings.show.uncertainty) for (const one of targets) this.drawEllipse(one);
-    const dangers = new Set(store.dangers);
-    for (const one of store.encounters) {
-      if (dangers.has(one) || one.first === scene.selected || one.second === scene.selected) this.drawEncounter(one);
-    }
+    for (const danger of store.dangers) this.drawEncounter(danger);
     for (const one of targets) this.drawTarget(one);
     for (const one of store.lost.values()) this.drawLost(one);
     const vessels = settings.show.ais ? this.drawAis(time_s) : [];
@@ -314,7 +311,7 @@ export class Overlay {
       c.closePath();
       c.stroke();
     }
-    if (danger.first === selected || danger.second === selected) {
+    if (danger.second === selected || (danger.first === selected && danger.first !== 0)) {
       const { settings } = this.scene;
       const text = `CPA ${distance(danger.cpa_m, settings.units)} in ${minutes(danger.tcpa_s)}, ${percent(danger.probability)}`;
       this.text(text, (a[0] + b[0]) / 2, Math.max(a[1], b[1]) + 18, palette.danger, { font: FONT });

@@ -205,7 +205,8 @@ export class Panel {
     }
     for (const [name, one] of Object.entries(status.inputs ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
-      const bad = one.problems ? `, ${one.problems} unreadable` : "";
+      const problems = Object.values(one.problems ?? {}).reduce((sum, n) => sum + (Number(n?.count ?? n) || 0), 0);
+      const bad = problems ? `, ${problems} unreadable` : "";
       rows.push([name, `${Number.isFinite(age) ? `${age} s old` : "nothing received"}${bad}`, Number.isFinite(age) && age < 15 ? "good" : "bad"]);
     }
     for (const [name, one] of Object.entries(status.own ?? {})) {

@@ -48,7 +48,7 @@ export function minutes(value_s) {
   if (!known(value_s)) return NONE;
   const sign = value_s < 0 ? "−" : "";
   const all = Math.round(Math.abs(value_s));
-  if (all >= 5999) return `${sign}${Math.round(all / 60)} min`;
+  if (all >= 5999) return `${sign}${(all / 3600).toFixed(all < 35999 ? 1 : 0)} h`;
   return `${sign}${Math.floor(all / 60)}:${String(all % 60).padStart(2, "0")}`;
 }
 

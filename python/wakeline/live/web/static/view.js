@@ -90,12 +90,15 @@ export class View {
       this.moored = [this.moored[0] + north, this.moored[1] + east];
       return;
     }
-    const limit = 0.8;
     const r = this.radius;
-    this.offset = [
-      Math.max(-limit, Math.min(limit, this.offset[0] + dx / r)),
-      Math.max(-limit, Math.min(limit, this.offset[1] + dy / r)),
-    ];
+    this.offset = [this.offset[0] + dx / r, this.offset[1] + dy / r];
+  }
+
+  /** Bring a place into the picture. */
+  show(north, east) {
+    const [x, y] = this.toScreen(north, east);
+    const [mx, my] = this.middle;
+    if (Math.max(Math.abs(x - mx), Math.abs(y - my)) > this.radius) this.pan(mx - x, my - y);
   }
 
   centerOwn() {
