@@ -234,7 +234,8 @@ def _ais(targets: dict[str, VideoTarget], plane: wl.LocalPlane, at_s: float) -> 
         static = {"type": 5, "mmsi": _MMSI + k, "shipname": name, "ship_type": 70}
         for message in (position, static):
             for line in pyais.encode_dict(message):
-                yield _Message(at_s, "ais", line.encode() + b"\r\n")
+                body = line[1 : line.rindex("*")].replace("VDO", "VDM", 1)
+                yield _Message(at_s, "ais", _sentence("!", body))
 
 
 def rmc(time_s: float, latitude_deg: float, longitude_deg: float, velocity: np.ndarray) -> bytes:
@@ -249,7 +250,11 @@ def rmc(time_s: float, latitude_deg: float, longitude_deg: float, velocity: np.n
         f"{_packed(longitude_deg, 3)},{'E' if longitude_deg >= 0 else 'W'},"
         f"{speed_kn:.2f},{course_deg:.1f},{time.strftime('%d%m%y', clock)},,,A"
     )
-    return f"${body}*{reduce(xor, body.encode(), 0):02X}\r\n".encode()
+    return _sentence("$", body)
+
+
+def _sentence(begin: str, body: str) -> bytes:
+    return f"{begin}{body}*{reduce(xor, body.encode(), 0):02X}\r\n".encode()
 
 
 def _packed(angle_deg: float, digits: int) -> str:
