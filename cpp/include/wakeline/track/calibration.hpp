@@ -71,8 +71,8 @@ struct CalibrationConfig {
   void validate() const { validate_fields(*this); }
 };
 
-/// A position report of a vessel (AIS, GNSS).
-struct PositionReport {
+/// A reported position of a vessel (AIS, GNSS) that plots are compared with.
+struct ReferenceReport {
   std::int64_t vessel = 0;  ///< such as its MMSI
   double time_s = 0.0;
   double north_m = 0.0;
@@ -190,7 +190,7 @@ class Calibration {
 
   /// Takes a report. `kNotFinite` for one without a finite time or position, or of one vessel too
   /// many; `kNegativeTimeStep` for one that is not after the last one of the vessel.
-  Status report(const PositionReport& report) {
+  Status report(const ReferenceReport& report) {
     if (!std::isfinite(report.time_s) || !in_range(report.north_m) || !in_range(report.east_m) ||
         !(report.position_std_m >= 0.0 && in_range(report.position_std_m)))
       return Status::kNotFinite;
@@ -244,13 +244,13 @@ class Calibration {
 
   /// The last two reports of a vessel and the way between them.
   struct Vessel {
-    PositionReport before = {}, last = {};
+    ReferenceReport before = {}, last = {};
     bool interpolated = false;
     bool smooth = false;     // a cubic with the reported velocities, else a line
     double bend_mps2 = 0.0;  // how much the velocity changes
     Pair slope_mps = Pair::Zero(), velocity_mps = Pair::Zero();
 
-    void append(const PositionReport& report, double max_gap_s) noexcept {
+    void append(const ReferenceReport& report, double max_gap_s) noexcept {
       before = last;
       last = report;
       const double step_s = last.time_s - before.time_s;
@@ -355,7 +355,7 @@ class Calibration {
 inline void Calibration::match(int slot, const Plot& plot) noexcept {
   const Vessel& vessel = vessels_[static_cast<std::size_t>(slot)];
   if (!vessel.covers(plot.time_s)) return;
-  const PositionReport &a = vessel.before, &b = vessel.last;
+  const ReferenceReport &a = vessel.before, &b = vessel.last;
   const double step_s = b.time_s - a.time_s, u = (plot.time_s - a.time_s) / step_s;
   const Pair p{a.north_m, a.east_m}, q{b.north_m, b.east_m};
   Pair place = (1.0 - u) * p + u * q, velocity = vessel.velocity_mps;
