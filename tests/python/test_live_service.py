@@ -22,7 +22,7 @@ from wakeline.live.config import (
     RadarConfig,
     SessionConfig,
 )
-from wakeline.live.network import NetworkInput, NetworkOutput
+from wakeline.live.network import NetworkInput, NetworkOutput, _Clock
 from wakeline.live.record import Recorder, at_microsecond, read_session, segments_of
 from wakeline.live.service import Service, feed_record
 from wakeline.recording import RecordingError
@@ -166,6 +166,18 @@ def test_an_output_serves_clients_and_drops_for_one_that_does_not_read():
     stalled.close()
     thread.join(5.0)
     reader.close()
+
+
+def test_the_clock_does_not_go_back(monkeypatch):
+    clock, machine = _Clock(), {"wall": time.time(), "up": time.monotonic()}
+    monkeypatch.setattr(time, "time", lambda: machine["wall"])
+    monkeypatch.setattr(time, "monotonic", lambda: machine["up"])
+    before = clock()
+    machine["wall"] -= 3 * 3600.0
+    machine["up"] += 1.0
+    assert clock() == pytest.approx(before + 1.0)
+    machine["wall"] += 6 * 3600.0
+    assert clock() == machine["wall"]
 
 
 def test_a_flood_is_dropped_and_counted():

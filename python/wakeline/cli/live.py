@@ -29,6 +29,8 @@ from wakeline.live.service import Service, feed_record, replay
 from wakeline.live.session import Session
 from wakeline.tracking.settings import Settings, SettingsError, read_settings
 
+from . import view
+
 _ABOUT = """\
 Tracks the vessels that radars on the network see, and sends the tracks.
 
@@ -210,20 +212,9 @@ def _screen(arguments: argparse.Namespace, session: Session) -> Iterator[None]:
     if arguments.web is None:
         yield
         return
-    try:
-        from wakeline.live.web import serve
-    except ModuleNotFoundError:
-        raise ValueError("--web needs aiohttp: pip install 'wakeline[live]'") from None
-
-    host, _, port = arguments.web.rpartition(":")
-    if not port.isdecimal():
-        raise ValueError(f"--web must be [HOST:]PORT, got {arguments.web!r}")
-    server = serve(session, host or "127.0.0.1", int(port), token=arguments.token)
-    print(f"screen at {server.url}", flush=True)
-    try:
+    with view.serving(session, arguments.web, arguments.token) as url:
+        print(f"screen at {url}", flush=True)
         yield
-    finally:
-        server.close()
 
 
 @contextlib.contextmanager

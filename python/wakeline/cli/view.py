@@ -98,7 +98,10 @@ def show(player: Player, arguments: argparse.Namespace) -> None:
 @contextlib.contextmanager
 def serving(session: object, web: str, token: str | None) -> Iterator[str]:
     """Serve a session at ``[HOST:]PORT`` while the block runs, and give the address of its page."""
-    from wakeline.live.web import serve
+    try:
+        from wakeline.live.web import serve
+    except ImportError as error:
+        raise ValueError(str(error)) from None
 
     host, _, port = web.rpartition(":")
     if not port.isdecimal() or int(port) > 65535:

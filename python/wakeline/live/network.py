@@ -25,6 +25,7 @@ from .config import InputConfig, OutputConfig, SettingsError
 Take = Callable[[str, list[tuple[float, bytes]]], None]
 """Called with the name of an input and its messages: times and octets."""
 
+_SET_FORWARD_S = 1.0  # of the machine's clock, which is followed
 _WAIT_S = 0.2  # until a thread looks whether it should end
 _BATCH = 64
 _RECEIVE_BUFFER = 16 << 20
@@ -33,6 +34,24 @@ _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
 _MOST_QUEUED = 1 << 20  # octets for a client that does not read
 HOW_TO_GET_SERIAL = "serial lines need pyserial: pip install 'wakeline[live]'"
+
+
+class _Clock:
+    """UTC seconds that never go back: a clock of the machine that is set back is not followed."""
+
+    def __init__(self) -> None:
+        self._ahead_s = time.time() - time.monotonic()
+
+    def __call__(self) -> float:
+        now_s = time.monotonic() + self._ahead_s
+        forward_s = time.time() - now_s
+        if forward_s > _SET_FORWARD_S:
+            self._ahead_s += forward_s
+            now_s += forward_s
+        return now_s
+
+
+now_s = _Clock()
 
 
 class _Thread:
@@ -149,13 +168,13 @@ class NetworkInput(_Thread):
                 octets = one.recv(_PIECE)
             except TimeoutError:
                 continue
-            first_s = time.time()
+            first_s = now_s()
             batch = [(first_s, octets)]
             one.setblocking(False)
             with contextlib.suppress(BlockingIOError):
                 while len(batch) < _BATCH:
                     octets = one.recv(_PIECE)
-                    batch.append((time.time(), octets))
+                    batch.append((now_s(), octets))
             one.settimeout(_WAIT_S)
             self._take(self.config.name, batch)
         one.close()
@@ -180,7 +199,7 @@ class NetworkInput(_Thread):
                 continue
             if not octets:
                 return False
-            self._take(name, [(time.time(), octets)])
+            self._take(name, [(now_s(), octets)])
         return True
 
     def _tcp_listen(self) -> bool:
@@ -219,7 +238,7 @@ class NetworkInput(_Thread):
         except OSError:
             return False
         if octets:
-            self._take(name, [(time.time(), octets)])
+            self._take(name, [(now_s(), octets)])
         return bool(octets)
 
     def _serial(self) -> bool:
@@ -233,7 +252,7 @@ class NetworkInput(_Thread):
             while not self._ends.is_set():
                 octets = one.read(max(one.in_waiting, 1))
                 if octets:
-                    self._take(self.config.name, [(time.time(), octets)])
+                    self._take(self.config.name, [(now_s(), octets)])
         return True
 
     def _stdin(self) -> bool:
@@ -245,14 +264,14 @@ class NetworkInput(_Thread):
                 octets = descriptor.read(_PIECE)
                 if not octets:
                     return True
-                self._take(self.config.name, [(time.time(), octets)])
+                self._take(self.config.name, [(now_s(), octets)])
         return True
 
     def _file(self) -> bool:
         self.connection = "reading"
         with Path(self._path()).open("rb") as file:
             while not self._ends.is_set() and (octets := file.read(_PIECE)):
-                self._take(self.config.name, [(time.time(), octets)])
+                self._take(self.config.name, [(now_s(), octets)])
         return True
 
     def _pcap(self) -> bool:
@@ -260,10 +279,10 @@ class NetworkInput(_Thread):
         self.connection, offset_s = "reading", None
         for datagram in datagrams_of(self._path()):
             if datagram.time_s is not None:
-                offset_s = time.time() - datagram.time_s if offset_s is None else offset_s
-                if self._ends.wait(max(datagram.time_s + offset_s - time.time(), 0.0)):
+                offset_s = now_s() - datagram.time_s if offset_s is None else offset_s
+                if self._ends.wait(max(datagram.time_s + offset_s - now_s(), 0.0)):
                     return True
-            self._take(self.config.name, [(time.time(), datagram.octets)])
+            self._take(self.config.name, [(now_s(), datagram.octets)])
         return True
 
     def _signalk(self) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from .network import NetworkInput, NetworkOutput, close_all
+from .network import NetworkInput, NetworkOutput, close_all, now_s
 from .record import Record, Recorder, at_microsecond, read_session, segments_of
 from .session import CLOCK, Session
 
@@ -67,7 +67,7 @@ class Service:
 
     def _journal(self, command: Mapping[str, Any]) -> float:
         """Record what an operator asks for; its time."""
-        time_s = max(at_microsecond(time.time()), self.session.time_s)
+        time_s = max(at_microsecond(now_s()), self.session.time_s)
         if self._recorder is not None:
             self._recorder.command(time_s, dict(command))
         return time_s
@@ -115,7 +115,7 @@ class Service:
                 round(limits.most_mb * 1e6),
                 self.session.save,
             )
-            self._recorder.begin(max(at_microsecond(time.time()), self.session.time_s))
+            self._recorder.begin(max(at_microsecond(now_s()), self.session.time_s))
         self.session.journal = self._journal
         for one in self.outputs:
             self.session.outputs[one.config.name].send = one.send
@@ -131,12 +131,12 @@ class Service:
             for _ in range(100):
                 name, messages = self._waiting.get_nowait()
                 self._feed(name, messages)
-        now_s = time.time()
-        if not 0.0 <= now_s - self._tick_s < _TICK_S:
-            self._tick_s = now_s
+        tick_s = now_s()
+        if not 0.0 <= tick_s - self._tick_s < _TICK_S:
+            self._tick_s = tick_s
             self._take_note()
             with self.session.lock:
-                time_s = max(at_microsecond(now_s), self.session.time_s)
+                time_s = max(at_microsecond(tick_s), self.session.time_s)
                 if self._recorder is not None:
                     self._recorder.clock(time_s)
                 self.session.feed(time_s, CLOCK, b"")
