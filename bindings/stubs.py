@@ -32,6 +32,9 @@ WORDS = [
     (r"\bdt_s: typing\.Any", "dt_s: ArrayLike"),
     (r"\b(own_\w+|bearing_rad): (typing\.Any|ArrayLike) = 0\.0", r"\1: ArrayLike = 0.0"),
     (r"\bplot_time_s: typing\.Any", "plot_time_s: ArrayLike | None"),
+    (r"\bestimate_time_s: typing\.Any", "estimate_time_s: ArrayLike"),
+    (r"\b(turn_rate_rad_s|age_s): typing\.Any = None", r"\1: ArrayLike | None = None"),
+    (r"(def numbers\(self\)) -> dict:", r"\1 -> dict[int, int]:"),
     (r"NDArray\[np\.bool\]", "NDArray[np.bool_]"),
     (r"\bvideo: typing\.Any", "video: RadarVideo"),
     (r"(def strobe_echo\(video: RadarVideo)", r"\1 | ScanImage"),
@@ -72,6 +75,7 @@ ATTRIBUTE = re.compile(
 )
 HOMES = {
     "core": ["Gaussian", "Step"],
+    "navigation": ["LocalPlane"],
     "measurement": [
         "ConvertedRangeBearing",
         "OwnShip",

@@ -16,6 +16,7 @@ PYBIND11_MODULE(_engine, m) {
   wakeline::python::define_navigation(m);
   wakeline::python::define_eval(m);
   wakeline::python::define_video(m);
+  wakeline::python::define_wire(m);
   wakeline::python::define_batch(m);
   wakeline::python::define_benchmark(m);
   wakeline::python::finish_border(m);

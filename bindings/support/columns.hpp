@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/arrays.hpp"
+#include "wakeline/core/types.hpp"
 
 namespace wakeline::python {
 

@@ -92,5 +92,6 @@ void define_track(py::module_& m);
 void define_eval(py::module_& m);
 void define_video(py::module_& m);
 void define_video_asterix(py::module_& video);
+void define_wire(py::module_& m);
 
 }  // namespace wakeline::python

@@ -41,7 +41,8 @@ Bytes block(unsigned category, std::initializer_list<std::size_t> items, Write w
 
 Bytes north_mark() {
   using namespace asterix::cat034;
-  return block(kCategory, {kSource, kMessageType, kTimeOfDay, kPeriod, kConfiguration, kPosition},
+  return block(kCategory,
+               {kSource, kMessageType, kTimeOfDay, kPeriod, kConfiguration, kRadarPosition},
                [](auto& out) {
                  out.put(2, 0x1907);
                  out.put(1, 1);

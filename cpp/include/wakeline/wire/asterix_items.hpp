@@ -92,7 +92,7 @@ enum Item : std::size_t {
   kCounts,
   kWindow,
   kFilter,
-  kPosition,
+  kRadarPosition,
   kCollimation,
   kExpansion,
   kSpecial,

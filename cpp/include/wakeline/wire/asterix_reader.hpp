@@ -196,7 +196,7 @@ class AsterixReader {
       record_.period_s = static_cast<double>(asterix::number(period)) / asterix::kTicksPerSecond;
     if (const Octets sector = items[kSector]; !sector.empty())
       record_.bearing_rad = octet(sector, 0) * (2 * kPi<double> / 256);
-    if (const Octets place = items[asterix::cat034::kPosition]; !place.empty()) {
+    if (const Octets place = items[kRadarPosition]; !place.empty()) {
       constexpr double step = kPi<double> / (1 << 23);
       record_.latitude_rad = value(place.subspan(2, 3)) * step;
       record_.longitude_rad = value(place.subspan(5, 3)) * step;
