@@ -100,7 +100,6 @@ class WireOutput(Output):
             "track_id": shown.track_id,
             "estimate_time_s": shown.time_s,
             "mean": shown.mean,
-            "coasting": shown.coasting,
             "name": shown.names,
         }
         for octets in self._feed.update(session.time_s, **columns, **self._more(session)):
@@ -144,11 +143,12 @@ class AsterixOutput(WireOutput):
     """System tracks of ASTERIX category 062, or tracks of 010."""
 
     def _make(self, session: Session) -> Any:
-        feed = wl.wire.Cat062Feed if self.config.format == "cat062" else wl.wire.Cat010Feed
-        return feed(session.plane)
+        if self.config.format == "cat010":
+            return wl.wire.Cat010Feed(session.plane)
+        return wl.wire.Cat062Feed(session.plane, several_radars=len(session.radars) > 1)
 
     def _more(self, session: Session) -> dict[str, Any]:
-        return {"covariance": session.shown.covariance}
+        return {"covariance": session.shown.covariance, "coasting": session.shown.coasting}
 
 
 _KINDS = {
