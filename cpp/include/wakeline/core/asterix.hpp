@@ -70,10 +70,16 @@ inline std::uint64_t azimuth_steps(double azimuth_rad) noexcept {
   return static_cast<std::uint64_t>(std::llround(turns * kAzimuthTurn)) & 0xFFFFu;
 }
 
+/// The time since the midnight before, s.
+inline double time_of_day(double time_s) noexcept {
+  const double of_day = std::fmod(time_s, kDay);
+  return of_day < 0.0 ? of_day + kDay : of_day;
+}
+
 /// The time of day as ticks of 1/128 s.
 inline std::uint64_t day_ticks(double time_s) noexcept {
-  const double of_day = time_s - kDay * std::floor(time_s / kDay);
-  const auto count = static_cast<std::uint64_t>(std::llround(of_day * kTicksPerSecond));
+  const auto count =
+      static_cast<std::uint64_t>(std::llround(time_of_day(time_s) * kTicksPerSecond));
   return count % static_cast<std::uint64_t>(kDay * kTicksPerSecond);
 }
 

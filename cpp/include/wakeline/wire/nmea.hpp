@@ -69,11 +69,11 @@ class NmeaSentence {
     }
   }
 
-  /// The time of day as hhmmss.ss.
+  /// The time of day as hhmmss.ss; an empty field where it is not finite.
   void time_of_day(double time_s) noexcept {
-    const double day = 100.0 * asterix::kDay;
-    const double hundredths = std::round(100.0 * time_s);
-    const auto of_day = static_cast<std::int64_t>(hundredths - day * std::floor(hundredths / day));
+    if (!std::isfinite(time_s)) return empty();
+    const std::int64_t day = 8'640'000;  // in hundredths
+    const std::int64_t of_day = std::llround(100.0 * asterix::time_of_day(time_s)) % day;
     const std::int64_t minutes = of_day / 6000;
     put(',');
     digits(minutes / 60, 2);

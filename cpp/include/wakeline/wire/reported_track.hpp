@@ -113,7 +113,7 @@ class ReportSchedule {
   }
 
   /// Calls `send(track, turn)` for each track to be sent now, ended ones first. `tracks` are all
-  /// that are shown. Tracks that are not finite are not sent.
+  /// that are shown. Tracks that are not finite, or 10 000 km away, are not sent.
   template <class Send>
   void update(double time_s, std::span<const ReportedTrack> tracks, Send&& send) noexcept {
     for (Sent& one : sent_) one.present = false;
@@ -127,7 +127,7 @@ class ReportSchedule {
     });
     waiting_ = 0;
     for (const ReportedTrack& track : tracks) {
-      if (!track.kinematics.mean.allFinite() || !std::isfinite(track.time_s)) continue;
+      if (!valid(track)) continue;
       Sent* one = find(track.id);
       const bool first = one == nullptr;
       if (first && (one = add(track.id, time_s)) == nullptr) continue;
@@ -186,6 +186,11 @@ class ReportSchedule {
   std::vector<Sent>::iterator place_of(std::int64_t id) noexcept {
     return std::lower_bound(sent_.begin(), sent_.end(), id,
                             [](const Sent& one, std::int64_t key) { return one.track.id < key; });
+  }
+
+  static bool valid(const ReportedTrack& track) noexcept {
+    return std::isfinite(track.time_s) && track.kinematics.mean.cwiseAbs().maxCoeff() < 1e7 &&
+           track.kinematics.mean.allFinite();
   }
 
   Sent* find(std::int64_t id) noexcept {
