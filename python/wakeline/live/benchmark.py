@@ -8,6 +8,7 @@ import os
 import platform
 import resource
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -38,6 +39,7 @@ Figure = dict[str, Any]
 def figures(seconds: float = 20.0, hours: float = 24.0) -> Iterator[Figure]:
     """The figures one by one, each with its name, value, unit and limit."""
     yield from latency(seconds)
+    yield from sector_latency()
     yield from four_radars(seconds)
     yield from many_tracks()
     yield from stalled_client()
@@ -158,6 +160,71 @@ def _receive(receiver: socket.socket, late_s: list[float], ends: threading.Event
             continue
         if line["type"] == "track" and line["misses"] == 0:
             late_s.append(time.time() - line["time_s"] - width_s)
+
+
+def sector_latency(turns: int = 16, targets: int = 20) -> Iterator[Figure]:
+    """From the message that ends a sector of category 048 to the tracks in it on the wire."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
+        receiver.bind(("127.0.0.1", 0))
+        receiver.settimeout(0.2)
+        config = LiveConfig(
+            inputs=(InputConfig("udp://127.0.0.1:0?name=plots", format="cat048"),),
+            outputs=(OutputConfig(f"udp://127.0.0.1:{receiver.getsockname()[1]}", format="json"),),
+            radars=(RadarConfig("A", position_deg=_PLACE_DEG, settings=_RADAR),),
+        )
+        session = Session(config)
+        service = Service(session)
+        thread = threading.Thread(target=service.run)
+        thread.start()
+        sent: dict[float, float] = {}
+        late_s: list[float] = []
+        ends = threading.Event()
+        hearing = threading.Thread(target=_receive_sectors, args=(receiver, sent, late_s, ends))
+        hearing.start()
+        _send_sectors(service.inputs[0].port, turns, targets, sent)
+        time.sleep(0.3)
+        ends.set()
+        hearing.join()
+        service.stop()
+        thread.join()
+    late_ms = 1e3 * np.array(late_s or [math.inf])
+    yield _figure("sector of plots to track, median", float(np.median(late_ms)), "ms", 20.0)
+
+
+def _send_sectors(port: int, turns: int, targets: int, sent: dict[float, float]) -> None:
+    bearing_rad = (np.arange(targets) + 0.5) * 2.0 * np.pi / targets
+    begin_s = time.time()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.connect(("127.0.0.1", port))
+        for k in range(turns * 32):
+            due_s = begin_s + PERIOD_S * k / 32.0
+            time.sleep(max(due_s - time.time(), 0.0))
+            edge = k % 32
+            inside = (32.0 * bearing_rad / (2.0 * np.pi)).astype(int) == (edge - 1) % 32
+            ticks = round(due_s % 86400.0 * 128.0)
+            of_day = ticks.to_bytes(3, "big")
+            for bearing in bearing_rad[inside].tolist():
+                polar = struct.pack(">HH", 500, round(bearing / (2.0 * math.pi) * 65536.0))
+                one.send(_block(48, b"\xf0\x01\x01" + of_day + b"\x20" + polar))
+            one.send(_block(34, b"\xf0\x01\x01\x02" + of_day + bytes([8 * edge])))
+            sent[ticks] = time.time()
+
+
+def _block(category: int, record: bytes) -> bytes:
+    return bytes([category]) + (len(record) + 3).to_bytes(2, "big") + record
+
+
+def _receive_sectors(
+    receiver: socket.socket, sent: dict[float, float], late_s: list[float], ends: threading.Event
+) -> None:
+    while not ends.is_set():
+        try:
+            line = json.loads(receiver.recv(1 << 16))
+        except TimeoutError:
+            continue
+        began_s = sent.get(round(line.get("time_s", 0.0) % 86400.0 * 128.0))
+        if line["type"] == "track" and began_s is not None:
+            late_s.append(time.time() - began_s)
 
 
 def four_radars(seconds: float) -> Iterator[Figure]:
