@@ -13,6 +13,7 @@ import pytest
 from geographiclib.geodesic import Geodesic
 
 from wakeline.cli import main
+from wakeline.live.record import Recorder
 from wakeline.recording import Tracks, export_tracks, write_tracks
 
 START = datetime(2026, 5, 1, 12, 0, tzinfo=timezone.utc)
@@ -245,3 +246,28 @@ def test_the_command_says_what_is_wrong(tmp_path, monkeypatch, tracks, capsys, a
     assert main(["export", *arguments]) == 2
     assert said in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["in.csv"]
+
+
+def test_a_session_is_replayed_and_has_its_own_origin(tmp_path, capsys):
+    """A boat seen ashore: 6 m/s to the north, 2 km to the east."""
+    path = tmp_path / "watch.pcap"
+    radar = {"name": "A", "position_deg": list(ORIGIN), "period_s": 2.5}
+    recorder = Recorder(path, {"radar": [radar]})
+    recorder.begin(START.timestamp())
+    for k in range(20):
+        t = START.timestamp() + 2.5 * k
+        north = 6.0 * 2.5 * k - 150.0
+        plot = {"range_m": math.hypot(north, 2000.0), "bearing_rad": math.atan2(2000.0, north)}
+        sector = {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}
+        for line in ({"time_s": t, **plot}, {"sector": sector}):
+            octets = json.dumps({"radar": "A", **line}).encode()
+            recorder.data(t, "plots", "udp://127.0.0.1:8600", octets)
+    recorder.close()
+    assert main(["export", str(path), str(tmp_path / "out.geojson")]) == 0
+    assert "1 track" in capsys.readouterr().out
+    (feature,) = json.loads((tmp_path / "out.geojson").read_text())["features"]
+    longitude, latitude = feature["geometry"]["coordinates"][-1]
+    line = Geodesic.WGS84.Inverse(*ORIGIN, latitude, longitude)
+    last = math.hypot(6.0 * 47.5 - 150.0, 2000.0)
+    assert line["s12"] == pytest.approx(last, abs=30.0)
+    assert feature["properties"]["end"] == "2026-05-01T12:00:47.500Z"

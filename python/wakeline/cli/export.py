@@ -7,7 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from wakeline._brief import many
-from wakeline.recording import export_tracks, read_tracks
+from wakeline.recording import Tracks, export_tracks, read_tracks
 
 from . import options, outputs
 
@@ -20,9 +20,17 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         description="Writes tracks with latitude and longitude for maps and navigation programs. "
         "The ending of each file is its format: .gpx, .kml, .geojson or .csv.",
     )
-    parser.add_argument("tracks", type=Path, metavar="TRACKS.csv")
+    parser.add_argument(
+        "tracks",
+        type=Path,
+        metavar="TRACKS.csv|SESSION",
+        help="tracks, or a session file of wakeline live --record, which is replayed",
+    )
     parser.add_argument("files", type=Path, nargs="+", metavar="FILE")
-    options.add_origin(parser, "degrees, where north 0, east 0 of the tracks is", required=True)
+    options.add_origin(
+        parser,
+        "degrees, where north 0, east 0 of the tracks is; default for a session: its own origin",
+    )
     parser.add_argument(
         "--start",
         type=_time,
@@ -48,14 +56,27 @@ def inputs(arguments: argparse.Namespace) -> list[Path]:
     return [arguments.tracks]
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Do what the command line asks for."""
-    outputs.check_no_input("FILE", arguments.files, inputs(arguments))
+def _read(arguments: argparse.Namespace) -> tuple[Tracks, tuple[float, float] | None]:
+    """Tracks and their origin."""
+    if arguments.tracks.suffix.lower() not in (".csv", ".gz"):
+        from wakeline.live.session_tracks import session_tracks
+
+        tracks, origin_deg = session_tracks(arguments.tracks)
+        return tracks, arguments.origin or origin_deg
     notes: list[str] = []
     tracks = read_tracks(arguments.tracks, columns=dict(arguments.columns), notes=notes)
     for note in notes:
         print(f"note: {note}")
+    return tracks, arguments.origin
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what the command line asks for."""
+    outputs.check_no_input("FILE", arguments.files, inputs(arguments))
+    tracks, origin_deg = _read(arguments)
+    if origin_deg is None:
+        raise ValueError("--origin LAT,LON is needed: the tracks have no latitude and longitude")
     for file in arguments.files:
-        export_tracks(file, tracks, origin_deg=arguments.origin, start=arguments.start)
+        export_tracks(file, tracks, origin_deg=origin_deg, start=arguments.start)
     written = ", ".join(map(str, arguments.files))
     print(f"{many(len(tracks.ids()), 'track')}, {many(len(tracks), 'row')} written to {written}")

@@ -45,11 +45,9 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_origin(parser: argparse.ArgumentParser, help_text: str, *, required: bool = False) -> None:
+def add_origin(parser: argparse.ArgumentParser, help_text: str) -> None:
     """Add the option of the position of the plane's origin."""
-    parser.add_argument(
-        "--origin", type=_origin, metavar="LAT,LON", required=required, help=help_text
-    )
+    parser.add_argument("--origin", type=_origin, metavar="LAT,LON", help=help_text)
 
 
 def files(arguments: argparse.Namespace, *names: str) -> list[Path]:
