@@ -141,7 +141,10 @@ def _boat(start_s: float) -> Iterator[_Message]:
         now = np.array([begin_s + at_s])
         position_m = episode.own.position_at(now)[0] - middle_m
         velocity = episode.own.velocity_at(now)[0]
-        yield _Message(at_s, "boat", rmc(start_s + at_s, *_degrees(plane, position_m), velocity))
+        heading_deg = math.degrees(math.atan2(velocity[1], velocity[0])) % 360.0
+        hdt = _sentence("$", f"GPHDT,{heading_deg:.1f},T")
+        fix = rmc(start_s + at_s, *_degrees(plane, position_m), velocity)
+        yield _Message(at_s, "boat", fix + hdt)
         while scan is not None and scan.time_s - begin_s <= at_s + _OWN_S:
             yield from _scan(scan, scan.time_s - begin_s, start_s - begin_s)
             scan = next(scans, None)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-import wakeline as wl
+from wakeline import _engine
 
 from .config import OutputConfig
 from .engine import LiveTrack
@@ -127,7 +127,7 @@ class TtmOutput(WireOutput):
     def _make(self, session: Session) -> Any:
         periods = [radar.period_s for radar in session.tracker.radars]
         interval_s = max(_LEAST_INTERVAL_S, *periods)
-        return wl.wire.TtmFeed(
+        return _engine.wire.TtmFeed(
             session.plane, interval_s=interval_s, tll=self.config.format == "tll"
         )
 
@@ -144,8 +144,8 @@ class AsterixOutput(WireOutput):
 
     def _make(self, session: Session) -> Any:
         if self.config.format == "cat010":
-            return wl.wire.Cat010Feed(session.plane)
-        return wl.wire.Cat062Feed(session.plane, several_radars=len(session.radars) > 1)
+            return _engine.wire.Cat010Feed(session.plane)
+        return _engine.wire.Cat062Feed(session.plane, several_radars=len(session.radars) > 1)
 
     def _more(self, session: Session) -> dict[str, Any]:
         return {"covariance": session.shown.covariance, "coasting": session.shown.coasting}
@@ -163,7 +163,7 @@ _KINDS = {
 def make_output(config: OutputConfig) -> Output:
     """The output of a format."""
     kind = _KINDS[config.format]
-    if kind is not JsonOutput and not hasattr(wl, "wire"):
+    if kind is not JsonOutput and not hasattr(_engine, "wire"):
         return Output(config)
     return kind(config)
 
