@@ -7,69 +7,19 @@
 #include <variant>
 #include <vector>
 
+#include "any_tracker.hpp"
 #include "estimators.hpp"
-#include "lanes/lanes.hpp"
 #include "support/fields.hpp"
-#include "support/thread_lock.hpp"
 #include "support/types.hpp"
 #include "trackers.hpp"
-#include "wakeline/track/tracker.hpp"
-#include "wakeline/track/vessel_models.hpp"
 
 namespace wakeline::python {
 
 void define_calibration(py::module_& track);     // calibration.cpp
+void define_late_window(py::module_& track);     // late_window.cpp
 void define_strobe_tracker(py::module_& track);  // strobe_tracker.cpp
 
 namespace {
-
-/// Steps of the usual estimator in the lanes of this processor.
-class VesselSteps {
- public:
-  explicit VesselSteps(const VesselImm& prototype) : one_by_one_(prototype) {
-    if (const LaneKernels* kernels = lane_kernels()) lanes_ = kernels->vessels(prototype);
-  }
-
-  void predict(std::span<PredictionStep<VesselImm>> steps) noexcept {
-    lanes_ ? lanes_->predict(steps) : one_by_one_.predict(steps);
-  }
-  void update(std::span<UpdateStep<VesselImm>> steps) noexcept {
-    lanes_ ? lanes_->update(steps) : one_by_one_.update(steps);
-  }
-
- private:
-  OneByOne<VesselImm> one_by_one_;
-  std::unique_ptr<VesselLanes> lanes_;
-};
-
-using VesselTracker = Tracker<VesselImm, VesselSteps>;
-
-/// A tracker with any estimator.
-class AnyTracker {
- public:
-  AnyTracker(std::span<const Radar> radars, const TrackerConfig& config,
-             const AnyEstimator& estimator)
-      : tracker_(Tracker<AnyEstimator>(radars, config, estimator)) {}
-  AnyTracker(std::span<const Radar> radars, const TrackerConfig& config, const VesselImm& imm)
-      : tracker_(VesselTracker(radars, config, imm)) {}
-
-  template <class Function>
-  auto visit(const Function& function) {
-    const auto hold = lock();
-    return std::visit(function, tracker_);
-  }
-  template <class Function>
-  auto visit(const Function& function) const {
-    const auto hold = lock();
-    return std::visit(function, tracker_);
-  }
-
-  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
-
- private:
-  std::variant<VesselTracker, Tracker<AnyEstimator>> tracker_;
-  ThreadLock lock_;
-};
 
 using Course = Ekf<WanderingCourse>;
 using Turn = Ekf<CoordinatedTurnRate>;
@@ -104,44 +54,17 @@ std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
   return imm;
 }
 
-struct PyReport {
-  py::array_t<std::int64_t> plot_track_id;
-  std::vector<Event> events;
-  int rejected_plots;
-};
-
-struct PyReportResult {
-  Status status;
-  std::int64_t track_id;
-  std::vector<Event> events;
-};
-
-/// Tracks as arrays.
-struct PyTracks {
-  py::array_t<std::int64_t> track_id;
-  std::vector<std::string> status;
-  py::array_t<double> time_s, mean, covariance, mode_probability, nis, existence, visibility;
-  py::object turn_rate_rad_s;  ///< None where no model changes its turn rate
-  py::array_t<std::int64_t> hits, misses;
-  std::vector<std::string> name;
-  std::vector<std::string> identity;
-  py::array_t<double> identity_probability, identity_time_s;
-};
-
 /// A tracker with an estimator given by hand.
 AnyTracker tracker_with(std::span<const Radar> radars, const TrackerConfig& config,
-                        const py::object& estimator) {
+                        const py::object& estimator, const LateWindowConfig* window) {
   const AnyEstimator& any = to_mixture(estimator);
   if (const auto* imm = std::get_if<AnyImm>(&any.variant()))
-    if (const auto vessel = as_vessel_imm(*imm)) return AnyTracker(radars, config, *vessel);
-  return AnyTracker(radars, config, any);
+    if (const auto vessel = as_vessel_imm(*imm)) return AnyTracker(radars, config, *vessel, window);
+  return AnyTracker(radars, config, any, window);
 }
 
 py::object python_estimator(const VesselImm& imm) { return py::cast(as_any_imm(imm)); }
 py::object python_estimator(const AnyEstimator& estimator) { return to_python(estimator); }
-
-/// Radars by number, of which some may have been removed: one alone is not a list.
-using Radars = std::variant<Radar, std::vector<std::optional<Radar>>>;
 
 template <class Tracker>
 Radars radars_of(const Tracker& tracker) {
@@ -153,6 +76,8 @@ Radars radars_of(const Tracker& tracker) {
   return radars;
 }
 
+}  // namespace
+
 Arguments tracker_arguments(const AnyTracker& any) {
   return any.visit([](const auto& tracker) {
     return Arguments()
@@ -163,9 +88,10 @@ Arguments tracker_arguments(const AnyTracker& any) {
 }
 
 AnyTracker make_tracker(const Radars& radars, const TrackerConfig& config,
-                        const VesselModels& models, const py::object& estimator) {
+                        const VesselModels& models, const py::object& estimator,
+                        const LateWindowConfig* window) {
   if (const auto* one = std::get_if<Radar>(&radars))
-    return make_tracker(std::vector<std::optional<Radar>>{*one}, config, models, estimator);
+    return make_tracker(std::vector<std::optional<Radar>>{*one}, config, models, estimator, window);
   const auto& wanted = std::get<std::vector<std::optional<Radar>>>(radars);
   std::vector<Radar> list;
   const auto known = std::find_if(wanted.begin(), wanted.end(),
@@ -173,12 +99,14 @@ AnyTracker make_tracker(const Radars& radars, const TrackerConfig& config,
   require(known != wanted.end(), "radar", "one Radar at least", static_cast<int>(wanted.size()));
   for (const auto& radar : wanted) list.push_back(radar.value_or(**known));
   AnyTracker tracker = estimator.is_none()
-                           ? AnyTracker(list, config, vessel_imm(list.front(), models))
-                           : tracker_with(list, config, estimator);
+                           ? AnyTracker(list, config, vessel_imm(list.front(), models), window)
+                           : tracker_with(list, config, estimator, window);
   for (std::size_t k = 0; k < wanted.size(); ++k)
     if (!wanted[k]) tracker.visit([&](auto& one) { (void)one.remove_radar(static_cast<int>(k)); });
   return tracker;
 }
+
+namespace {
 
 /// Raises ValueError unless the tracker has a radar of that number.
 void require_radar(const AnyTracker& tracker, int radar) {
@@ -222,13 +150,15 @@ std::vector<Plot> plots_of(double time_s, const DoubleArray& range_m,
 
 /// The report of `process` over so many plots.
 template <class Process>
-PyReport reported(std::size_t plots, const char* what, const Process& process) {
+PyReport reported(const AnyTracker& tracker, std::size_t plots, const char* what,
+                  const Process& process) {
   ScanReport report;
   {
     const py::gil_scoped_release release;
     report = process();
   }
-  require_ok(report.status, what);
+  const bool too_late = tracker.has_window() && report.status == Status::kNegativeTimeStep;
+  if (!too_late) require_ok(report.status, what);
   PyReport result{py::array_t<std::int64_t>(static_cast<py::ssize_t>(plots)),
                   {report.events.begin(), report.events.end()},
                   report.rejected_plots};
@@ -258,7 +188,7 @@ PyReport process(AnyTracker& tracker, double time_s, const DoubleArray& range_m,
   const auto hold = tracker.lock();  // the report is the tracker's memory
   require_radar(tracker, 0);
   require_time(tracker, "process", time_s);
-  return reported(plots.size(), "process", [&] {
+  return reported(tracker, plots.size(), "process", [&] {
     return tracker.visit([&](auto& one) { return one.process(time_s, plots); });
   });
 }
@@ -278,7 +208,7 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
   require_radar(tracker, radar);
   require_time(tracker, "sector", time_s, radar);
   const Sector part{radar, from_rad, to_rad, time_s, plots, own};
-  return reported(plots.size(), "sector",
+  return reported(tracker, plots.size(), "sector",
                   [&] { return tracker.visit([&](auto& one) { return one.sector(part); }); });
 }
 
@@ -329,7 +259,7 @@ PyReport partial(AnyTracker& tracker, const char* what, PositionPart part, int s
       part, sensor,         time_s, {values.data(), static_cast<std::size_t>(values.shape(0))},
       std,  false_per_unit, own};
   const auto hold = tracker.lock();  // the report is the tracker's memory
-  return reported(scan.values.size(), what,
+  return reported(tracker, scan.values.size(), what,
                   [&] { return tracker.visit([&](auto& one) { return one.partial(scan); }); });
 }
 
@@ -378,6 +308,10 @@ PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<do
 
 }  // namespace
 
+PyTracks tracks_of(const AnyTracker& any, const std::optional<double>& time_s, bool tentative) {
+  return any.visit([&](const auto& tracker) { return tracks(tracker, time_s, tentative); });
+}
+
 void define_track(py::module_& parent) {
   py::module_ m = parent.def_submodule("track", "The life of tracks.");
 
@@ -413,7 +347,7 @@ void define_track(py::module_& parent) {
             const auto kind = fields[0].cast<int>();
             const auto reason = fields[4].cast<int>();
             if (kind < int(TrackEvent::kStarted) || kind > int(TrackEvent::kIdentityShared) ||
-                reason < int(LossReason::kNone) || reason > int(LossReason::kFailed))
+                reason < int(LossReason::kNone) || reason > int(LossReason::kCorrected))
               throw py::value_error("state is not that of an event");
             Event event{TrackEvent(kind), fields[1].cast<std::int64_t>(),
                         fields[2].cast<std::int64_t>(), fields[3].cast<double>(),
@@ -440,8 +374,9 @@ void define_track(py::module_& parent) {
           "why a track was lost: missed (without a plot for too long), doubtful (a tentative track "
           "whose target hardly exists), too_fast (above the speed limit), uncertain (its position "
           "is not known well enough), duplicate (a senior track follows the same target), "
-          "displaced (a tentative track that made room) or failed (the estimator cannot follow the "
-          "measurements); empty for other events")
+          "displaced (a tentative track that made room), failed (the estimator cannot follow the "
+          "measurements) or corrected (with late data there is no such track); empty for other "
+          "events")
       .def_readonly("track_id", &Event::track_id, "0 of full")
       .def_readonly("tentative_id", &Event::tentative_id,
                     "the negative number before confirmation; 0 for a designated track")
@@ -538,8 +473,11 @@ ValueError
     When a setting is invalid.)");
   define_arguments(tracker);
   tracker
-      .def(py::init(&make_tracker), py::arg("radar"),
-           py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
+      .def(py::init([](const Radars& radars, const TrackerConfig& config,
+                       const VesselModels& models, const py::object& estimator) {
+             return make_tracker(radars, config, models, estimator);
+           }),
+           py::arg("radar"), py::arg_v("config", TrackerConfig{}, "TrackerConfig()"),
            py::arg_v("models", VesselModels{}, "VesselModels()"), py::arg("estimator") = py::none())
       .def("process", &process, py::arg("time_s"), py::kw_only(), py::arg("range_m"),
            py::arg("bearing_rad"), py::arg("plot_time_s") = py::none(),
@@ -763,13 +701,8 @@ Raises
 ------
 ValueError
     When there is no radar of that number.)")
-      .def(
-          "tracks",
-          [](const AnyTracker& tracker, const std::optional<double>& time_s, bool tentative) {
-            return tracker.visit([&](const auto& one) { return tracks(one, time_s, tentative); });
-          },
-          py::arg("time_s") = py::none(), py::arg("tentative") = false,
-          R"(The confirmed and coasting tracks (with `tentative` all), at one time.
+      .def("tracks", &tracks_of, py::arg("time_s") = py::none(), py::arg("tentative") = false,
+           R"(The confirmed and coasting tracks (with `tentative` all), at one time.
 
 Parameters
 ----------
@@ -794,7 +727,7 @@ ValueError
              double position_std_m) {
             require_finite("time_s", time_s);
             const double latest_s =
-                tracker.visit([](const auto& one) { return one.latest_time_s(); });
+                std::as_const(tracker).visit([](const auto& one) { return one.latest_time_s(); });
             require(
                 time_s <= latest_s, "time_s",
                 ("at most " + std::to_string(latest_s) + ", an hour after the last scan").c_str(),
@@ -868,6 +801,7 @@ designated or dropped again.)")
       "The complete state as bytes, for a tracker with the same settings on the same kind "
       "of machine.");
 
+  define_late_window(m);
   define_strobe_tracker(m);
   define_calibration(m);
 }

@@ -146,6 +146,8 @@
 #include "wakeline/track/existence.hpp"
 #include "wakeline/track/identities.hpp"
 #include "wakeline/track/initiation.hpp"
+#include "wakeline/track/input_log.hpp"
+#include "wakeline/track/late_window.hpp"
 #include "wakeline/track/life_cycle.hpp"
 #include "wakeline/track/look.hpp"
 #include "wakeline/track/mode_positions.hpp"

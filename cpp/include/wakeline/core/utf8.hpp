@@ -32,4 +32,11 @@ constexpr bool is_utf8(std::string_view bytes) noexcept {
   return true;
 }
 
+/// How many of the first `most` bytes of UTF-8 are whole letters.
+constexpr std::size_t whole_letters(std::string_view utf8, std::size_t most) noexcept {
+  if (utf8.size() <= most) return utf8.size();
+  while (most > 0 && (utf8[most] & 0xC0) == 0x80) --most;
+  return most;
+}
+
 }  // namespace wakeline

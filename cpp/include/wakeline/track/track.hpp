@@ -72,6 +72,7 @@ enum class LossReason : std::uint8_t {
   kDuplicate,  ///< a senior track follows the same target
   kDisplaced,  ///< a tentative track that made room for a more probable one
   kFailed,     ///< the estimator cannot follow the measurements
+  kCorrected,  ///< with late data there is no such track
 };
 
 constexpr const char* to_string(LossReason reason) noexcept {
@@ -92,6 +93,8 @@ constexpr const char* to_string(LossReason reason) noexcept {
       return "displaced";
     case LossReason::kFailed:
       return "failed";
+    case LossReason::kCorrected:
+      return "corrected";
   }
   return "unknown";
 }

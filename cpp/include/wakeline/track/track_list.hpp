@@ -93,6 +93,22 @@ class TrackListOf {
     close_gaps();
   }
 
+  /// Takes the tracks of another list of the same capacity, each in its slot.
+  void copy_from(const TrackListOf& other) noexcept {
+    in_use_ = other.in_use_;
+    place_ = other.place_;
+    slots_ = other.slots_;
+    vacant_ = other.vacant_;
+    for_each_slot([&](int slot) { at(slot) = other.at(slot); });
+  }
+
+  /// Calls `f(slot)` for the slots in use, in the order of memory.
+  template <class Function>
+  void for_each_slot(Function&& function) const noexcept {
+    for (std::size_t slot = 0; slot < in_use_.size(); ++slot)
+      if (in_use_[slot] != 0) function(static_cast<int>(slot));
+  }
+
   /// Saves or restores the tracks; fails when the bytes are not a list of this capacity.
   void archive(Archive& fields) {
     fields(slots_, pool_.size());

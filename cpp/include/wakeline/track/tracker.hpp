@@ -218,7 +218,7 @@ class Tracker {
 
   /// The estimator of a track of this tracker.
   [[nodiscard]] const Estimator& estimator_of(const Track& track) const noexcept {
-    return estimators_[static_cast<std::size_t>(track.slot)];
+    return estimator_of(track.slot);
   }
 
   /// The belief of a track of this tracker at a time such as `time_s()`, before its estimate at
@@ -259,11 +259,8 @@ class Tracker {
   bool rename(std::int64_t id, std::string_view name) noexcept {
     Track* track = tracks_.find(id);
     if (track == nullptr || !is_utf8(name)) return false;
-    std::size_t length = std::min(name.size(), track->name.size() - 1);
-    const auto inside_letter = [&](std::size_t k) { return (name[k] & 0xC0) == 0x80; };
-    while (length > 0 && length < name.size() && inside_letter(length)) --length;
     track->name.fill('\0');
-    std::copy_n(name.begin(), length, track->name.begin());
+    std::copy_n(name.begin(), whole_letters(name, track->name.size() - 1), track->name.begin());
     return true;
   }
 
@@ -274,6 +271,21 @@ class Tracker {
   /// Continues bit for bit from the saved tracker. False, and nothing changed, when the bytes are
   /// not the state of a tracker with the same settings and models.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes);
+
+  /// Continues bit for bit from another tracker with the same settings and models, as `restore`
+  /// does from what it saved, also with its radars. No memory is taken where there are as many.
+  void copy_state_from(const Tracker& other) noexcept {
+    radars_ = other.radars_;
+    at_hand_ = other.at_hand_;
+    time_s_ = other.time_s_;
+    started_ = other.started_;
+    full_ = other.full_;
+    next_id_ = other.next_id_;
+    next_tentative_id_ = other.next_tentative_id_;
+    identities_ = other.identities_;
+    tracks_.copy_from(other.tracks_);
+    tracks_.for_each_slot([&](int slot) { estimator_at(slot) = other.estimator_of(slot); });
+  }
 
   [[nodiscard]] const Estimator& prototype() const noexcept { return prototype_; }
   [[nodiscard]] const TrackerConfig& config() const noexcept { return config_; }
@@ -336,6 +348,9 @@ class Tracker {
     return {status, {}, {}, 0};
   }
 
+  [[nodiscard]] const Estimator& estimator_of(int slot) const noexcept {
+    return estimators_[static_cast<std::size_t>(slot)];
+  }
   Estimator& estimator_at(int slot) noexcept { return estimators_[static_cast<std::size_t>(slot)]; }
   CandidatePlots& candidates_of(const Track& track) noexcept {
     return candidates_[static_cast<std::size_t>(track.slot)];

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// The trackers of vessels that Python has, with or without a window for late data.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimators.hpp"
+#include "lanes/lanes.hpp"
+#include "support/arguments.hpp"
+#include "support/thread_lock.hpp"
+#include "support/types.hpp"
+#include "wakeline/track/late_window.hpp"
+#include "wakeline/track/tracker.hpp"
+#include "wakeline/track/vessel_models.hpp"
+
+namespace wakeline::python {
+
+/// Steps of the usual estimator in the lanes of this processor.
+class VesselSteps {
+ public:
+  explicit VesselSteps(const VesselImm& prototype) : one_by_one_(prototype) {
+    if (const LaneKernels* kernels = lane_kernels()) lanes_ = kernels->vessels(prototype);
+  }
+
+  void predict(std::span<PredictionStep<VesselImm>> steps) noexcept {
+    lanes_ ? lanes_->predict(steps) : one_by_one_.predict(steps);
+  }
+  void update(std::span<UpdateStep<VesselImm>> steps) noexcept {
+    lanes_ ? lanes_->update(steps) : one_by_one_.update(steps);
+  }
+
+ private:
+  OneByOne<VesselImm> one_by_one_;
+  std::unique_ptr<VesselLanes> lanes_;
+};
+
+using VesselTracker = Tracker<VesselImm, VesselSteps>;
+
+/// A tracker with any estimator.
+class AnyTracker {
+ public:
+  /// Behind a window for late data where one is given.
+  AnyTracker(std::span<const Radar> radars, const TrackerConfig& config,
+             const AnyEstimator& estimator, const LateWindowConfig* window)
+      : tracker_(make<Tracker<AnyEstimator>>(window, radars, config, estimator)) {}
+  AnyTracker(std::span<const Radar> radars, const TrackerConfig& config, const VesselImm& imm,
+             const LateWindowConfig* window)
+      : tracker_(make<VesselTracker>(window, radars, config, imm)) {}
+
+  /// Calls a function with the tracker or its window.
+  template <class Function>
+  auto visit(const Function& function) {
+    const auto hold = lock();
+    return std::visit(function, tracker_);
+  }
+  /// Calls a function with the tracker.
+  template <class Function>
+  auto visit(const Function& function) const {
+    const auto hold = lock();
+    return std::visit([&](const auto& one) { return function(tracker_of(one)); }, tracker_);
+  }
+  /// Calls a function with the window, which there must be.
+  template <class Function>
+  auto visit_window(const Function& function) {
+    const auto hold = lock();
+    const auto usual = std::get_if<LateWindow<VesselTracker>>(&tracker_);
+    return usual != nullptr ? function(*usual)
+                            : function(std::get<LateWindow<Tracker<AnyEstimator>>>(tracker_));
+  }
+
+  [[nodiscard]] bool has_window() const noexcept { return tracker_.index() > 1; }
+
+  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
+
+ private:
+  using Variant = std::variant<VesselTracker, Tracker<AnyEstimator>, LateWindow<VesselTracker>,
+                               LateWindow<Tracker<AnyEstimator>>>;
+
+  template <class One, class... Arguments>
+  static Variant make(const LateWindowConfig* window, const Arguments&... arguments) {
+    if (window == nullptr) return One(arguments...);
+    return LateWindow<One>(*window, arguments...);
+  }
+
+  template <class Estimator, class Steps>
+  static const auto& tracker_of(const Tracker<Estimator, Steps>& tracker) {
+    return tracker;
+  }
+  template <class One>
+  static const One& tracker_of(const LateWindow<One>& window) {
+    return window.tracker();
+  }
+
+  Variant tracker_;
+  ThreadLock lock_;
+};
+
+struct PyReport {
+  py::array_t<std::int64_t> plot_track_id;
+  std::vector<Event> events;
+  int rejected_plots;
+};
+
+struct PyReportResult {
+  Status status;
+  std::int64_t track_id;
+  std::vector<Event> events;
+};
+
+/// Tracks as arrays.
+struct PyTracks {
+  py::array_t<std::int64_t> track_id;
+  std::vector<std::string> status;
+  py::array_t<double> time_s, mean, covariance, mode_probability, nis, existence, visibility;
+  py::object turn_rate_rad_s;  ///< None where no model changes its turn rate
+  py::array_t<std::int64_t> hits, misses;
+  std::vector<std::string> name;
+  std::vector<std::string> identity;
+  py::array_t<double> identity_probability, identity_time_s;
+};
+
+/// Radars by number, of which some may have been removed: one alone is not a list.
+using Radars = std::variant<Radar, std::vector<std::optional<Radar>>>;
+
+/// A tracker with the arguments that Python has, behind a window where one is given.
+AnyTracker make_tracker(const Radars& radars, const TrackerConfig& config,
+                        const VesselModels& models, const py::object& estimator,
+                        const LateWindowConfig* window = nullptr);
+
+/// The arguments of an equal one.
+Arguments tracker_arguments(const AnyTracker& any);
+
+/// The tracks at a time.
+PyTracks tracks_of(const AnyTracker& any, const std::optional<double>& time_s, bool tentative);
+
+}  // namespace wakeline::python

@@ -1,0 +1,387 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// Inputs that come late.
+#include "wakeline/track/late_window.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "support/malloc_fence.hpp"
+#include "track/scene.hpp"
+
+namespace wakeline::late_window_test {
+namespace {
+
+using namespace test;
+
+using VesselWindow = LateWindow<VesselTracker>;
+
+const double kPeriod_s = kTestRadar.period_s;
+
+struct Input {
+  double time_s;
+  TrackerInput what;
+  std::vector<Plot> plots = {};
+};
+
+VesselWindow make_window(const LateWindowConfig& window = {}, const TrackerConfig& config = {}) {
+  return VesselWindow(window, kTestRadar, config, vessel_imm(kTestRadar));
+}
+
+/// Boats among clutter, seen in sectors, and an operator who designates, names and drops.
+std::vector<Input> scene(std::uint64_t seed, int sectors, int turns) {
+  Sea sea(seed);
+  std::vector<Boat> boats;
+  for (int k = 0; k < 12; ++k)
+    boats.push_back({{sea.draw.uniform(-3000, 3000), sea.draw.uniform(-3000, 3000)},
+                     5.0 * sea.draw.normals<2>()});
+  std::vector<Input> inputs;
+  for (int turn = 0; turn < turns; ++turn) {
+    std::vector<Plot> plots;
+    for (const Boat& boat : boats)
+      if (sea.draw.uniform(0, 1) < 0.85) plots.push_back(sea.swept(boat, turn * kPeriod_s));
+    for (int k = 0; k < 10; ++k) {
+      Plot plot = sea.clutter(0.0, 3500.0);
+      plot.time_s = (turn + compass_angle(plot.bearing_rad) / Beam::kTurn) * kPeriod_s;
+      plots.push_back(plot);
+    }
+    for (int k = 0; k < sectors; ++k) {
+      const double time_s = (turn + (k + 1.0) / sectors) * kPeriod_s;
+      SectorInput sector{0, Beam::kTurn * k / sectors, Beam::kTurn * (k + 1) / sectors, time_s};
+      if (k % 3 == 0) sector.own = OwnShip{};
+      Input input{time_s, sector};
+      for (const Plot& plot : plots)
+        if (const double angle_rad = compass_angle(plot.bearing_rad);
+            angle_rad >= sector.from_rad && angle_rad < sector.to_rad)
+          input.plots.push_back(plot);
+      inputs.push_back(input);
+      if (sea.draw.uniform(0, 1) < 3.0 / sectors) {
+        const double after_s = time_s + 0.3 * kPeriod_s / sectors;
+        if (sea.draw.uniform(0, 1) < 0.5) {
+          Designation action;
+          action.time_s = after_s;
+          action.north_m = sea.draw.uniform(-3000, 3000);
+          action.east_m = sea.draw.uniform(-3000, 3000);
+          action.position_std_m = 50.0;
+          inputs.push_back({after_s, action});
+        } else if (sea.draw.uniform(0, 1) < 0.5) {
+          Removal action;
+          action.id = int(sea.draw.uniform(1, 15));
+          action.hush = turn % 2 == 0;
+          inputs.push_back({after_s, action});
+        } else {
+          Naming action;
+          action.id = int(sea.draw.uniform(1, 15));
+          action.name = {'M', 'a', 'r', 'y'};
+          action.length = 4;
+          inputs.push_back({after_s, action});
+        }
+      }
+    }
+  }
+  return inputs;
+}
+
+/// The inputs as they come when each is late by up to so much.
+std::vector<Input> shuffled(const std::vector<Input>& inputs, double latest_s, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> delay_s(0.0, latest_s);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+    order.emplace_back(inputs[k].time_s + delay_s(random), k);
+  std::sort(order.begin(), order.end());
+  std::vector<Input> result;
+  for (const auto& [time_s, k] : order) result.push_back(inputs[k]);
+  return result;
+}
+
+ScanReport give(VesselWindow& window, const Input& input) {
+  ScanReport report;
+  std::visit(
+      [&]<class What>(const What& what) {
+        if constexpr (std::is_same_v<What, SectorInput>)
+          report = what.give_to(window, input.plots);
+        else if constexpr (std::is_same_v<What, Removal>)
+          (void)window.drop(what.id, what.hush, input.time_s);
+        else if constexpr (std::is_same_v<What, Naming>)
+          (void)window.rename(what.id, {what.name.data(), what.length}, input.time_s);
+        else
+          (void)what.give_to(window, {});
+      },
+      input.what);
+  return report;
+}
+
+/// A tracker that has had the inputs in order.
+VesselTracker in_order(std::vector<Input> inputs, const TrackerConfig& config = {}) {
+  std::stable_sort(inputs.begin(), inputs.end(),
+                   [](const Input& a, const Input& b) { return a.time_s < b.time_s; });
+  VesselTracker tracker = make_tracker(config);
+  for (const Input& input : inputs)
+    std::visit([&](const auto& what) { (void)what.give_to(tracker, input.plots); }, input.what);
+  return tracker;
+}
+
+TEST(LateWindow, ShuffledInputsGiveTheTracksOfThoseInOrderBitForBit) {
+  for (const int sectors : {1, 16})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      SCOPED_TRACE(std::to_string(sectors) + " sectors, seed " + std::to_string(seed));
+      const std::vector<Input> come =
+          shuffled(scene(seed, sectors, sectors == 1 ? 80 : 24), 2.0 * kPeriod_s, seed);
+      VesselWindow window = make_window();
+      for (std::size_t k = 0; k < come.size(); ++k) {
+        (void)give(window, come[k]);
+        if (k % (come.size() / 8) != 0 && k + 1 != come.size()) continue;
+        (void)window.correct();
+        ASSERT_TRUE(window.tracker().save() ==
+                    in_order({come.begin(), come.begin() + std::ptrdiff_t(k) + 1}).save())
+            << k;
+      }
+      EXPECT_EQ(window.counts().too_late, 0);
+      EXPECT_GT(window.counts().late, std::ssize(come) / 12);
+      EXPECT_GT(window.tracker().size(), 8);
+    }
+}
+
+TEST(LateWindow, InputsInTimeAreThoseOfATracker) {
+  const std::vector<Input> inputs = scene(4, 8, 30);
+  VesselWindow window = make_window();
+  VesselTracker tracker = make_tracker();
+  for (const Input& input : inputs) {
+    const ScanReport report = give(window, input);
+    if (const auto* sector = std::get_if<SectorInput>(&input.what)) {
+      const ScanReport wanted = sector->give_to(tracker, input.plots);
+      EXPECT_TRUE(std::ranges::equal(report.plot_track_id, wanted.plot_track_id));
+      EXPECT_EQ(report.events.size(), wanted.events.size());
+      EXPECT_EQ(report.rejected_plots, wanted.rejected_plots);
+    } else {
+      std::visit([&](const auto& what) { (void)what.give_to(tracker, {}); }, input.what);
+    }
+    ASSERT_TRUE(window.is_correct());
+    ASSERT_TRUE(window.tracker().save() == tracker.save());
+  }
+  EXPECT_EQ(window.counts().corrections, 0);
+}
+
+TEST(LateWindow, TheOrderOfInputsOfOneTimeIsThatOfWhatTheyAre) {
+  std::vector<Input> inputs;
+  for (int turn = 0; turn < 12; ++turn)
+    for (int k = 0; k < 4; ++k) {
+      const double from_rad = Beam::kTurn * k / 4;
+      Input input{turn * kPeriod_s,
+                  SectorInput{0, from_rad, from_rad + Beam::kTurn / 4, turn * kPeriod_s}};
+      input.plots = {
+          exact_plot({1000.0 * std::cos(from_rad + 0.5) + turn, 1000.0 * std::sin(from_rad + 0.5)},
+                     turn * kPeriod_s)};
+      inputs.push_back(input);
+      input.plots[0].range_m += 500.0;  // the same sector once more
+      inputs.push_back(input);
+    }
+  std::vector<std::byte> wanted;
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 8; ++round) {
+    VesselWindow window = make_window();
+    for (std::size_t turn = 0; turn < inputs.size(); turn += 8) {
+      const auto first = inputs.begin() + std::ptrdiff_t(turn);
+      if (round > 0) std::shuffle(first, first + 8, random);
+      for (auto input = first; input != first + 8; ++input) (void)give(window, *input);
+    }
+    (void)window.correct();
+    if (round == 0) wanted = window.tracker().save();
+    EXPECT_TRUE(window.tracker().save() == wanted) << round;
+  }
+  EXPECT_GT(in_order(inputs).size(), 3);
+}
+
+TEST(LateWindow, WhatIsTooLateIsCountedAndChangesNothing) {
+  VesselWindow window = make_window({.window_s = 3.0});
+  for (int turn = 1; turn < 20; ++turn) (void)window.process(kPeriod_s * turn, {});
+  const double newest_s = kPeriod_s * 19;
+  EXPECT_EQ(window.earliest_time_s(), newest_s - 3.0);
+  const auto before = window.tracker().save();
+  const Plot plot = exact_plot({1000.0, 0.0}, newest_s - 3.1);
+  const ScanReport report = window.process(newest_s - 3.1, {&plot, 1});
+  EXPECT_EQ(report.status, Status::kNegativeTimeStep);
+  EXPECT_EQ(report.rejected_plots, 1);
+  EXPECT_EQ(window.counts().too_late, 1);
+  EXPECT_EQ(window.counts().late, 0);
+  (void)window.correct();
+  EXPECT_TRUE(window.tracker().save() == before);
+  EXPECT_EQ(window.process(newest_s - 3.0, {&plot, 1}).status, Status::kOk) << "at the edge";
+  EXPECT_EQ(window.counts().late, 1);
+
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(window.process(kNan, {}).status, Status::kNotFinite);
+  EXPECT_EQ(window.sector({.radar = 7, .to_rad = 1.0, .time_s = newest_s}).status,
+            Status::kNotFinite);
+  EXPECT_EQ(window.sector({.from_rad = kNan, .to_rad = 1.0, .time_s = newest_s - 1.0}).status,
+            Status::kNotFinite);
+  EXPECT_EQ(window.designate(kNan, 0.0, 0.0, 10.0), 0);
+  EXPECT_EQ(window.counts().late, 1);
+}
+
+TEST(LateWindow, AnActionIsNeverTooLateAndNeverAhead) {
+  VesselWindow window = make_window();
+  for (int turn = 1; turn < 20; ++turn) (void)window.process(kPeriod_s * turn, {});
+  EXPECT_EQ(window.designate(window.earliest_time_s() - 5.0, 500.0, 0.0, 20.0), 1);
+  EXPECT_EQ(window.designate(20 * kPeriod_s + 1000.0, 0.0, 500.0, 20.0), 2);
+  for (int turn = 20; turn < 22; ++turn) (void)window.process(kPeriod_s * turn, {});
+  EXPECT_TRUE(window.is_correct());
+  EXPECT_NE(window.tracker().find(2), nullptr);
+  EXPECT_TRUE(window.drop(2));
+  EXPECT_TRUE(window.rename(1, "Mary"));
+  EXPECT_FALSE(window.rename(1, "\xff"));
+  (void)window.correct();
+  EXPECT_EQ(window.tracker().find(2), nullptr);
+  EXPECT_EQ(window.tracker().find(1)->label(), "Mary");
+
+  VesselWindow early = make_window();
+  EXPECT_EQ(early.designate(1.7e9, 500.0, 500.0, 20.0), 1) << "no clock yet";
+  for (int turn = 1; turn < 30; ++turn) (void)early.process(kPeriod_s * turn, {});
+  EXPECT_EQ(early.tracker().size(), 0) << "it was of another clock";
+  EXPECT_EQ(early.counts().too_late, 0);
+}
+
+TEST(LateWindow, WithLittleRoomIsShorterAndStillExact) {
+  for (const LateWindowConfig& config :
+       {LateWindowConfig{.max_inputs = 16}, LateWindowConfig{.max_plots = 1}}) {
+    const TrackerConfig small{.max_plots = 40};
+    const std::vector<Input> come = shuffled(scene(5, 16, 16), 2.0 * kPeriod_s, 5);
+    VesselWindow window = make_window(config, small);
+    std::vector<Input> taken;
+    for (const Input& input : come) {
+      const std::int64_t before = window.counts().too_late;
+      if (std::holds_alternative<SectorInput>(input.what)) {
+        (void)give(window, input);
+        if (window.counts().too_late == before) taken.push_back(input);
+      }
+    }
+    (void)window.correct();
+    EXPECT_TRUE(window.tracker().save() == in_order(taken, small).save());
+    EXPECT_GT(window.counts().too_late, 0);
+    EXPECT_GT(taken.size(), come.size() / 4);
+  }
+}
+
+TEST(LateWindow, EventsSayWhichNumbersThereAre) {
+  std::vector<Input> inputs = scene(6, 16, 24);
+  std::erase_if(inputs, [](const Input& input) { return input.what.index() != 0; });
+  VesselWindow window = make_window();
+  std::set<std::int64_t> numbers;
+  const auto note = [&](std::span<const Event> events) {
+    for (const Event& event : events) {
+      if (event.track_id <= 0) continue;
+      if (event.kind == TrackEvent::kConfirmed) {
+        EXPECT_TRUE(numbers.insert(event.track_id).second) << event.track_id;
+      } else if (event.kind == TrackEvent::kLost) {
+        EXPECT_EQ(numbers.erase(event.track_id), 1u) << event.track_id;
+      }
+    }
+  };
+  for (const Input& input : shuffled(inputs, 2.0 * kPeriod_s, 6)) {
+    note(give(window, input).events);
+    std::set<std::int64_t> there = ids_of(window.tracker());
+    std::erase_if(there, [](std::int64_t id) { return id <= 0; });
+    ASSERT_EQ(numbers, there);
+  }
+  note(window.correct());
+  std::set<std::int64_t> there = ids_of(in_order(inputs));
+  std::erase_if(there, [](std::int64_t id) { return id <= 0; });
+  EXPECT_EQ(numbers, there);
+}
+
+/// Counts what it processes.
+struct Counted : VesselTracker {
+  using VesselTracker::VesselTracker;
+  ScanReport sector(const Sector& part) noexcept {
+    ++calls;
+    return VesselTracker::sector(part);
+  }
+  static inline int calls = 0;
+};
+
+TEST(LateWindow, CorrectionsOfWhatIsAlwaysLateAreBounded) {
+  // Every other sector is a turn late.
+  std::vector<Input> inputs = scene(7, 32, 40);
+  std::erase_if(inputs, [](const Input& input) { return input.what.index() != 0; });
+  std::vector<Input> come;
+  for (std::size_t k = 0; k < inputs.size() + 32; ++k) {
+    if (k % 2 == 0 && k < inputs.size()) come.push_back(inputs[k]);
+    if (k % 2 == 1 && k >= 32) come.push_back(inputs[k - 32]);
+  }
+  LateWindow<Counted> window({}, kTestRadar, TrackerConfig{}, vessel_imm(kTestRadar));
+  Counted::calls = 0;
+  double last_correct_s = 0.0;
+  for (const Input& input : come) {
+    (void)std::get<SectorInput>(input.what).give_to(window, input.plots);
+    if (window.is_correct()) last_correct_s = window.tracker().time_s();
+    EXPECT_LE(window.tracker().time_s() - last_correct_s, 1.5 * kPeriod_s);
+  }
+  EXPECT_LE(Counted::calls, 3 * std::ssize(come));
+  EXPECT_GT(window.counts().corrections, 20);
+  (void)window.correct();
+  EXPECT_TRUE(window.tracker().save() == in_order(inputs).save());
+}
+
+TEST(LateWindow, ARestoredOneGoesOnBitForBit) {
+  const std::vector<Input> come = shuffled(scene(8, 16, 20), 2.0 * kPeriod_s, 8);
+  VesselWindow window = make_window(), restored = make_window();
+  for (const Input& input : shuffled(scene(9, 4, 10), kPeriod_s, 9)) (void)give(restored, input);
+  const std::size_t half = come.size() / 2;
+  for (std::size_t k = 0; k < half; ++k) (void)give(window, come[k]);
+  const std::vector<std::byte> state = window.save();
+  ASSERT_TRUE(restored.restore(state));
+  EXPECT_TRUE(restored.save() == state);
+  for (std::size_t k = half; k < come.size(); ++k) {
+    (void)give(window, come[k]);
+    (void)give(restored, come[k]);
+  }
+  (void)window.correct();
+  (void)restored.correct();
+  EXPECT_TRUE(restored.tracker().save() == window.tracker().save());
+  EXPECT_TRUE(restored.tracker().save() == in_order(come).save());
+
+  const std::vector<std::byte> before = restored.save();
+  Draw draw(3);
+  for (int k = 0; k < 20; ++k) {
+    std::vector<std::byte> spoiled = state;
+    const auto at = static_cast<std::size_t>(draw.uniform(0, double(state.size())));
+    if (k % 2 == 0)
+      spoiled.resize(at);
+    else
+      spoiled[at] ^= std::byte{1};
+    EXPECT_FALSE(restored.restore(spoiled));
+  }
+  EXPECT_FALSE(restored.restore(make_window({.window_s = 7.0}).save()));
+  EXPECT_FALSE(restored.restore(make_window({}, {.coast_scans = 4.0}).save()));
+  EXPECT_FALSE(restored.restore(make_tracker().save()));
+  EXPECT_TRUE(restored.save() == before);
+}
+
+TEST(LateWindow, TakesNoMemoryAfterItsConstruction) {
+  const std::vector<Input> come = shuffled(scene(10, 16, 20), 2.4 * kPeriod_s, 10);
+  const TrackerConfig config{.max_tracks = 50, .max_plots = 100};
+  for (const LateWindowConfig& room : {LateWindowConfig{}, LateWindowConfig{.max_inputs = 20}}) {
+    VesselWindow window = make_window(room, config);
+    const NoHeap fence;
+    for (const Input& input : come) (void)give(window, input);
+    (void)window.correct();
+    EXPECT_EQ(fence.allocations(), 0);
+    EXPECT_GT(window.counts().late, 0);
+    EXPECT_GT(window.counts().too_late, 0);
+  }
+}
+
+TEST(LateWindow, RejectsSettingsThatMakeNoSense) {
+  for (const LateWindowConfig& bad :
+       {LateWindowConfig{.window_s = -1.0}, LateWindowConfig{.max_inputs = 0},
+        LateWindowConfig{.max_plots = 0}})
+    EXPECT_THROW(make_window(bad), std::invalid_argument);
+  EXPECT_EQ(make_window().config().window_s, 2.0 * kPeriod_s);
+}
+
+}  // namespace
+}  // namespace wakeline::late_window_test
