@@ -54,7 +54,7 @@ Scans, sectors and what the operator does are put in their place by time: of one
 radar and angles, so that the order in which they come does not matter. The calls are those of
 `Tracker`. What comes in time is processed at once. For what comes late the tracker goes back and
 processes again what came since, as soon as the work that came in pays for it: all corrections
-together cost at most 1.5 times what processing in order does. `tracks()` and `correct()` correct the
+together cost at most 1.75 times what processing in order does. `tracks()` and `correct()` correct the
 picture at once. The events of a correction are the numbers that there are now (confirmed), or are no
 more (lost, for the reason corrected). A number that a track got within the window may become that of
 another one by a correction; older ones stay.

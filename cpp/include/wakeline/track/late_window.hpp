@@ -201,7 +201,7 @@ class LateWindow {
   [[nodiscard]] bool restore(std::span<const std::byte> bytes);
 
   /// All corrections cost at most so many times what processing in order does.
-  static constexpr double kReplays = 1.5;
+  static constexpr double kReplays = 1.75;
 
  private:
   static constexpr double kNow = std::numeric_limits<double>::quiet_NaN();
