@@ -118,6 +118,16 @@ ValueError
       .def("correct", &PyLateWindow::correct,
            "Put all late data in the picture. Returns the events of the correction.")
       .def(
+          "merge",
+          [](PyLateWindow& late, std::int64_t id, std::int64_t other_id,
+             const std::optional<double>& time_s) {
+            const double at_s = time_or_now(time_s);
+            return late.visit_window(
+                [&](auto& window) { return window.merge(id, other_id, at_s); });
+          },
+          py::arg("track_id"), py::arg("other_id"), py::kw_only(), py::arg("time_s") = py::none(),
+          "As `Tracker.merge`, at a time; default: now.")
+      .def(
           "rename",
           [](PyLateWindow& late, std::int64_t id, std::string_view name,
              const std::optional<double>& time_s) {

@@ -724,7 +724,8 @@ ValueError
       .def(
           "designate",
           [](AnyTracker& tracker, double time_s, double north_m, double east_m,
-             double position_std_m) {
+             double position_std_m, const std::optional<double>& vnorth_mps,
+             const std::optional<double>& veast_mps, double velocity_std_mps) {
             require_finite("time_s", time_s);
             const double latest_s =
                 std::as_const(tracker).visit([](const auto& one) { return one.latest_time_s(); });
@@ -736,21 +737,36 @@ ValueError
             require_in_range("east_m", east_m);
             require_positive("position_std_m", position_std_m);
             require_in_range("position_std_m", position_std_m);
-            return tracker.visit(
-                [&](auto& one) { return one.designate(time_s, north_m, east_m, position_std_m); });
+            if (vnorth_mps.has_value() != veast_mps.has_value())
+              throw py::value_error("vnorth_mps and veast_mps must be given together");
+            std::optional<Gaussian<2>> velocity;
+            if (vnorth_mps) {
+              require_in_range("vnorth_mps", *vnorth_mps);
+              require_in_range("veast_mps", *veast_mps);
+              require_positive("velocity_std_mps", velocity_std_mps);
+              require_in_range("velocity_std_mps", velocity_std_mps);
+              velocity = {{*vnorth_mps, *veast_mps},
+                          velocity_std_mps * velocity_std_mps * Mat<double, 2, 2>::Identity()};
+            }
+            return tracker.visit([&](auto& one) {
+              return one.designate(time_s, north_m, east_m, position_std_m, velocity);
+            });
           },
           py::arg("time_s"), py::arg("north_m"), py::arg("east_m"),
-          py::arg("position_std_m") = 50.0,
+          py::arg("position_std_m") = 50.0, py::kw_only(), py::arg("vnorth_mps") = py::none(),
+          py::arg("veast_mps") = py::none(), py::arg("velocity_std_mps") = 2.0,
           R"(Confirm the track at a position, or start a confirmed one, on an operator's designation.
 
 Of several tracks whose gate the position is in, the nearest is confirmed, in standard deviations; a
-hushed one is shown again. A new track begins at rest.
+hushed one is shown again. A new track begins at rest, or with the velocity given.
 
 Parameters
 ----------
 time_s : float
     At most `latest_time_s`, an hour after the last scan.
 north_m, east_m, position_std_m : float
+vnorth_mps, veast_mps, velocity_std_mps : float, optional
+    Both components of the velocity, and their standard deviation, per axis.
 
 Returns
 -------
@@ -762,6 +778,15 @@ Raises
 ValueError
     When the time is too far ahead, a number is not finite or beyond 1e9, or the standard deviation
     not positive.)")
+      .def(
+          "merge",
+          [](AnyTracker& tracker, std::int64_t id, std::int64_t other_id) {
+            return tracker.visit([&](auto& one) { return one.merge(id, other_id); });
+          },
+          py::arg("track_id"), py::arg("other_id"),
+          R"(Say that two tracks are of one vessel; False if there are no two of these numbers.
+
+The second is ended, and the first takes its name if it has none.)")
       .def(
           "rename",
           [](AnyTracker& tracker, std::int64_t id, std::string_view name) {

@@ -55,12 +55,19 @@ TrackerInput any_action(Draw& draw, double time_s) {
     action.north_m = draw.uniform(-3000, 3000);
     action.east_m = draw.uniform(-3000, 3000);
     action.position_std_m = 50.0;
+    if (kind < 0.2) action.velocity = {{3.0, -4.0}, 4.0 * Mat<double, 2, 2>::Identity()};
     return action;
   }
   if (kind < 0.7) {
     Removal action;
     action.id = int(draw.uniform(1, 15));
     action.hush = kind < 0.6;
+    return action;
+  }
+  if (kind < 0.75) {
+    Merger action;
+    action.id = int(draw.uniform(1, 15));
+    action.other_id = int(draw.uniform(1, 15));
     return action;
   }
   if (kind < 0.8) {
@@ -168,6 +175,8 @@ ScanReport give(VesselWindow& window, const Input& input) {
           report = what.give_to(window, input.plots);
         else if constexpr (std::is_same_v<What, Removal>)
           (void)window.drop(what.id, what.hush, input.time_s);
+        else if constexpr (std::is_same_v<What, Merger>)
+          (void)window.merge(what.id, what.other_id, input.time_s);
         else if constexpr (std::is_same_v<What, RadarChange>)
           window.set_radar(what.number, what.radar, input.time_s);
         else if constexpr (std::is_same_v<What, Naming>)

@@ -39,6 +39,31 @@ TEST(Operator, DesignatesATargetBeforeTheFirstScan) {
   EXPECT_LT((tracker.find(1)->position() - kBoat.at(2.5 * 29)).norm(), 60.0);
 }
 
+TEST(Operator, DesignatesWithAVelocity) {
+  Sea sea(21);
+  VesselTracker tracker = make_tracker();
+  const Gaussian<2> velocity{{-4.0, 6.0}, 0.25 * Mat<double, 2, 2>::Identity()};
+  ASSERT_EQ(tracker.designate(0.0, kBoat.at(0)[0], kBoat.at(0)[1], 30.0, velocity), 1);
+  EXPECT_NEAR((tracker.find(1)->velocity() - kBoat.velocity_mps).norm(), 0.0, 0.5);
+  follow(tracker, sea, 1, 10);
+  EXPECT_LT((tracker.find(1)->velocity() - kBoat.velocity_mps).norm(), 2.0);
+  const Gaussian<2> flat{{-4.0, 6.0}, Mat<double, 2, 2>::Zero()};
+  EXPECT_EQ(tracker.designate(25.0, -900.0, 0.0, 30.0, flat), 0);
+}
+
+TEST(Operator, MergesTwoTracksOfOneVessel) {
+  VesselTracker tracker = make_tracker();
+  for (const double north_m : {500.0, 900.0})
+    ASSERT_GT(tracker.designate(0.0, north_m, 0.0, 20.0), 0);
+  (void)tracker.rename(2, "Mary");
+  EXPECT_FALSE(tracker.merge(1, 1));
+  EXPECT_FALSE(tracker.merge(1, 3));
+  EXPECT_TRUE(tracker.merge(1, 2));
+  EXPECT_EQ(ids_of(tracker), std::set<std::int64_t>{1});
+  EXPECT_EQ(tracker.find(1)->label(), "Mary");
+  EXPECT_FALSE(tracker.merge(1, 2));
+}
+
 TEST(Operator, DesignatingAheadOfTheClockHoldsUpNoScan) {
   Sea sea(2);
   VesselTracker tracker = make_tracker();

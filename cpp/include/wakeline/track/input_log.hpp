@@ -168,12 +168,32 @@ struct RadarChange : OperatorAction {
 /// `Tracker::designate`.
 struct Designation : OperatorAction {
   double time_s = 0.0, north_m = 0.0, east_m = 0.0, position_std_m = 0.0;
+  std::optional<Gaussian<2>> velocity = {};
 
   std::int64_t give_to(auto& tracker, std::span<const Plot>) const noexcept {
-    return tracker.designate(time_s, north_m, east_m, position_std_m);
+    return tracker.designate(time_s, north_m, east_m, position_std_m, velocity);
   }
   void archive(Archive& fields) {
     for (double* each : {&time_s, &north_m, &east_m, &position_std_m}) fields(*each);
+    bool is_given = velocity.has_value();
+    fields(is_given);
+    Gaussian<2> belief = velocity.value_or(Gaussian<2>{});
+    fields(belief.mean);
+    fields(belief.covariance);
+    velocity = is_given ? std::optional(belief) : std::nullopt;
+  }
+};
+
+/// `Tracker::merge`.
+struct Merger : OperatorAction {
+  std::int64_t id = 0, other_id = 0;
+
+  bool give_to(auto& tracker, std::span<const Plot>) const noexcept {
+    return tracker.merge(id, other_id);
+  }
+  void archive(Archive& fields) {
+    fields(id);
+    fields(other_id);
   }
 };
 
@@ -209,8 +229,8 @@ struct Naming : OperatorAction {
 };
 
 /// Any input of a tracker; of one time in this order.
-using TrackerInput =
-    std::variant<SectorInput, ReportInput, PartialInput, RadarChange, Designation, Removal, Naming>;
+using TrackerInput = std::variant<SectorInput, ReportInput, PartialInput, RadarChange, Designation,
+                                  Merger, Removal, Naming>;
 
 /// The inputs of a tracker in the order in which they take place, whatever the order in which they
 /// came.

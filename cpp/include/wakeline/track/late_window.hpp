@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -144,13 +145,22 @@ class LateWindow {
   }
 
   /// `Tracker::designate`, placed as a report.
-  std::int64_t designate(double time_s, double north_m, double east_m,
-                         double position_std_m) noexcept {
+  std::int64_t designate(double time_s, double north_m, double east_m, double position_std_m,
+                         const std::optional<Gaussian<2>>& velocity = {}) noexcept {
     Designation action;
     action.time_s = time_s;
     action.north_m = north_m;
     action.east_m = east_m;
     action.position_std_m = position_std_m;
+    action.velocity = velocity;
+    return act(time_s, action);
+  }
+
+  /// `Tracker::merge`, at a time; NaN: now.
+  bool merge(std::int64_t id, std::int64_t other_id, double time_s = kNow) noexcept {
+    Merger action;
+    action.id = id;
+    action.other_id = other_id;
     return act(time_s, action);
   }
 

@@ -232,14 +232,16 @@ class Tracker {
     return started_ ? time_s_ + kLongestSilence_s : std::numeric_limits<double>::infinity();
   }
 
-  /// Confirms the track in whose gate the operator points, or starts a confirmed one at rest.
+  /// Confirms the track in whose gate the operator points, or starts a confirmed one at rest, or
+  /// with the velocity given, [north, east].
   ///
   /// Returns its number, or 0 when there is no room, a number is not finite or out of range or the
   /// time is too far ahead. Of several tracks the nearest is confirmed, in standard deviations; it
   /// is hushed no more. Where the tracker is full, the weakest tentative track is deleted for a new
   /// one, without an event.
   [[nodiscard]] std::int64_t designate(double time_s, double north_m, double east_m,
-                                       double position_std_m) noexcept;
+                                       double position_std_m,
+                                       const std::optional<Gaussian<2>>& velocity = {}) noexcept;
 
   /// Deletes a track; false when there is none of that number. With `hush` its vessel is followed
   /// in silence, so that it does not start again under another number: the track is not shown, has
@@ -251,6 +253,17 @@ class Tracker {
       track->hushed = true;
     else
       tracks_.remove(track->slot);
+    return true;
+  }
+
+  /// Says that two tracks are of one vessel: the second is deleted, and the first takes its name if
+  /// it has none. False when there are no two of these numbers.
+  bool merge(std::int64_t id, std::int64_t other_id) noexcept {
+    Track* track = tracks_.find(id);
+    Track* other = tracks_.find(other_id);
+    if (track == nullptr || other == nullptr || track == other) return false;
+    if (track->label().empty()) track->name = other->name;
+    tracks_.remove(other->slot);
     return true;
   }
 
@@ -1312,18 +1325,23 @@ Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
 }
 
 template <class Estimator, class Steps>
-std::int64_t Tracker<Estimator, Steps>::designate(double time_s, double north_m, double east_m,
-                                                  double position_std_m) noexcept {
+std::int64_t Tracker<Estimator, Steps>::designate(
+    double time_s, double north_m, double east_m, double position_std_m,
+    const std::optional<Gaussian<2>>& velocity) noexcept {
   if (!std::isfinite(time_s) || time_s > latest_time_s()) return 0;
   const Gaussian<2> position{{north_m, east_m},
                              position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
   if (!in_range(position.mean) || !(position_std_m > 0.0) || !in_range(position_std_m)) return 0;
+  if (velocity && !(in_range(velocity->mean) && in_range(std::sqrt(velocity->covariance.trace())) &&
+                    Cholesky<2>(velocity->covariance).ok()))
+    return 0;
   if (Track* known = track_at(position, time_s)) {
     confirm_designated(*known);
     return known->id;
   }
   const Gaussian<4> belief = kinematics_from<double>(
-      position, state().initiation.prior_velocity(state().radar), Mat<double, 2, 2>::Zero());
+      position, velocity.value_or(state().initiation.prior_velocity(state().radar)),
+      Mat<double, 2, 2>::Zero());
   room_.reset();
   if (!room_.has_room_for(kDesignatedExistence, tracks_)) return 0;
   Track* track = open({belief, time_s, state().beam.angle_rad(), kDesignatedExistence, {}});
