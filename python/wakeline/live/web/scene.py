@@ -29,8 +29,8 @@ _LOOSE = {  # a smaller change needs no message: absolute, and relative
     "identity_probability": (0.05, 0.0),
     "seen": (1e300, 0.0),
 }
-_MOVED_M = 1.0
-_MOVED_STDS = 0.3
+_MOVED_M = 2.0
+_MOVED_STDS = 0.5
 _REPEAT_S = 15.0
 _GONE_KEPT = 5000
 _SECTIONS = ("origin_deg", "radars", "encounters", "alarms", "zones", "status", "limits", "note")

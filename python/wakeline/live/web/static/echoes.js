@@ -100,6 +100,14 @@ export class Echoes {
     return this.painter instanceof GlPainter;
   }
 
+  /** Whether this machine draws without a graphics processor. */
+  get isSoftware() {
+    if (!this.usesGl) return true;
+    const { gl } = this.painter;
+    const known = gl.getExtension("WEBGL_debug_renderer_info");
+    return /swiftshader|llvmpipe|software/i.test(known ? gl.getParameter(known.UNMASKED_RENDERER_WEBGL) : "");
+  }
+
   get range_m() {
     return Math.max(0, ...[...this.radars.values()].map((radar) => radar.range_m));
   }

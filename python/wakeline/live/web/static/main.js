@@ -61,8 +61,8 @@ function readSettings() {
 const settings = readSettings();
 const view = new View();
 const store = new Store();
-const overlay = new Overlay(byId("overlay"));
-let echoes = new Echoes(byId("echoes"), settings.gl);
+const echoes = new Echoes(byId("echoes"), settings.gl);
+const overlay = new Overlay(byId("overlay"), echoes.isSoftware);
 let selected = null;
 let dirty = true;
 let panelDue = true;

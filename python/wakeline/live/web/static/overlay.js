@@ -9,20 +9,24 @@ const ELLIPSE_STDS = 2.4477; // 95 % of a position
 const MOST_PAST_SHOWN = 12;
 const TARGET_PX = 6;
 const DANGER_PX = 10;
+const CIRCLE_PX = 8;
 
 export class Overlay {
-  constructor(canvas) {
+  constructor(canvas, isSoftware) {
     this.canvas = canvas;
-    this.context = canvas.getContext("2d");
+    this.kind = { willReadFrequently: isSoftware }; // drawn by the processor, not by an emulation
+    this.context = canvas.getContext("2d", this.kind);
     this.offsets = new Map();
     this.labels_ms = -Infinity;
     this.widths = new Map();
+    this.vectors = new Map();
+    this.circles = new Map();
   }
 
   draw(scene) {
     const { view, store, settings, palette, own, time_s } = scene;
     const c = this.context;
-    const ratio = this.canvas.width / view.width;
+    const ratio = (this.ratio = this.canvas.width / view.width);
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     c.clearRect(0, 0, view.width, view.height);
     c.lineCap = "butt";
@@ -37,7 +41,8 @@ export class Overlay {
     const targets = this.targets(time_s);
     if (settings.show.past) for (const one of targets) this.drawPast(one);
     for (const one of targets) this.drawVector(one);
-    if (settings.show.uncertainty) for (const one of targets) this.drawEllipse(one);
+    this.strokeVectors();
+    if (settings.show.uncertainty) this.drawEllipses(targets);
     for (const danger of store.dangers) this.drawEncounter(danger);
     for (const one of targets) this.drawTarget(one);
     for (const one of store.lost.values()) this.drawLost(one);
@@ -129,25 +134,54 @@ export class Overlay {
       c.stroke();
     }
     if (settings.vectors === "true" && own.speed > 0.1) {
-      this.vector(x, y, own.vnorth, own.veast, palette.own, 2);
+      this.vector(x, y, own.vnorth, own.veast, palette.own);
     }
   }
 
-  vector(x, y, vnorth, veast, color, width) {
+  /** Adds a vector to the path of its color; all of a color are drawn at once. */
+  vector(x, y, vnorth, veast, color) {
     const { view, settings } = this.scene;
-    const c = this.context;
     const length = settings.vectorMinutes * 60 * view.scale;
     const [cos, sin] = [Math.cos(view.rotation), Math.sin(view.rotation)];
     const [dx, dy] = [(veast * cos - vnorth * sin) * length, -(vnorth * cos + veast * sin) * length];
     if (Math.hypot(dx, dy) < 3) return;
-    c.strokeStyle = color;
-    c.lineWidth = width;
+    let path = this.vectors.get(color);
+    if (!path) this.vectors.set(color, (path = new Path2D()));
+    path.moveTo(x, y);
+    path.lineTo(x + dx, y + dy);
+  }
+
+  strokeVectors() {
+    const c = this.context;
+    c.lineWidth = 1.6;
     c.setLineDash([6, 3]);
-    c.beginPath();
-    c.moveTo(x, y);
-    c.lineTo(x + dx, y + dy);
-    c.stroke();
+    for (const [color, path] of this.vectors) {
+      c.strokeStyle = color;
+      c.stroke(path);
+    }
     c.setLineDash([]);
+    this.vectors.clear();
+  }
+
+  /** A circle as a picture: a thousand of them are copied faster than drawn. */
+  circle(color, dashed) {
+    const { ratio } = this;
+    const key = `${color} ${dashed} ${ratio}`;
+    let made = this.circles.get(key);
+    if (!made) {
+      made = document.createElement("canvas");
+      made.width = made.height = Math.ceil(2 * CIRCLE_PX * ratio);
+      const c = made.getContext("2d", this.kind);
+      c.scale(ratio, ratio);
+      c.strokeStyle = color;
+      c.lineWidth = 1.6;
+      c.setLineDash(dashed ? [3, 3] : []);
+      c.beginPath();
+      c.arc(CIRCLE_PX, CIRCLE_PX, TARGET_PX, 0, TURN);
+      c.stroke();
+      this.circles.set(key, made);
+    }
+    return made;
   }
 
   drawPlots() {
@@ -198,12 +232,15 @@ export class Overlay {
     const alert = target.danger || target.alarmed;
     c.strokeStyle = this.colorOf(target);
     if (!(target.flashes && blink)) {
-      c.lineWidth = alert ? 2.5 : 1.6;
-      c.setLineDash(target.status === "held" || target.status === "tentative" ? [3, 3] : []);
-      c.beginPath();
-      c.arc(x, y, alert ? DANGER_PX : TARGET_PX, 0, TURN);
-      c.stroke();
-      c.setLineDash([]);
+      if (alert) {
+        c.lineWidth = 2.5;
+        c.beginPath();
+        c.arc(x, y, DANGER_PX, 0, TURN);
+        c.stroke();
+      } else {
+        const acquiring = target.status === "held" || target.status === "tentative";
+        c.drawImage(this.circle(palette.target, acquiring), x - CIRCLE_PX, y - CIRCLE_PX, 2 * CIRCLE_PX, 2 * CIRCLE_PX);
+      }
       if (target.identity) this.triangle(x, y, target, this.colorOf(target), 4);
     }
     if (target.status === "coasting") {
@@ -251,7 +288,7 @@ export class Overlay {
     if (settings.vectors === "off") return;
     const relative = settings.vectors === "relative";
     const [vnorth, veast] = relative ? [target.vnorth - own.vnorth, target.veast - own.veast] : [target.vnorth, target.veast];
-    this.vector(target.x, target.y, vnorth, veast, this.colorOf(target), 1.6);
+    this.vector(target.x, target.y, vnorth, veast, this.colorOf(target));
   }
 
   drawPast(target) {
@@ -268,24 +305,25 @@ export class Overlay {
       const [x, y] = view.toScreen(north, east);
       if (Math.hypot(x - target.x, y - target.y) < 5) continue;
       c.globalAlpha = 1 - 0.7 * Math.min((time_s - when) / (settings.trailMinutes * 60), 1);
-      c.beginPath();
-      c.arc(x, y, 1.7, 0, TURN);
-      c.fill();
+      c.fillRect(x - 1.5, y - 1.5, 3, 3);
     }
     c.globalAlpha = 1;
   }
 
-  drawEllipse(target) {
-    const { view, palette } = this.scene;
-    if (target.major === null || target.major * ELLIPSE_STDS * view.scale < TARGET_PX + 1) return;
+  /** Regions that contain the position with 95 %, where they are larger than the symbol. */
+  drawEllipses(targets) {
+    const { view } = this.scene;
     const c = this.context;
-    const [a, b] = [target.major, target.minor].map((std) => Math.min(std * ELLIPSE_STDS * view.scale, 4000));
-    c.strokeStyle = this.colorOf(target);
     c.globalAlpha = 0.55;
     c.lineWidth = 1;
-    c.beginPath();
-    c.ellipse(target.x, target.y, a, Math.max(b, 0.5), view.screenAngle(target.axis) - TURN / 4, 0, TURN);
-    c.stroke();
+    for (const target of targets) {
+      if (target.major === null || target.major * ELLIPSE_STDS * view.scale < TARGET_PX + 1) continue;
+      const [a, b] = [target.major, target.minor].map((std) => Math.min(std * ELLIPSE_STDS * view.scale, 4000));
+      c.strokeStyle = this.colorOf(target);
+      c.beginPath();
+      c.ellipse(target.x, target.y, a, Math.max(b, 0.5), view.screenAngle(target.axis) - TURN / 4, 0, TURN);
+      c.stroke();
+    }
     c.globalAlpha = 1;
   }
 
@@ -367,10 +405,11 @@ export class Overlay {
       this.triangle(x, y, vessel, palette.ais, 5.5);
       if (settings.vectors !== "off") {
         const relative = settings.vectors === "relative";
-        this.vector(x, y, vessel.vnorth - (relative ? own.vnorth : 0), vessel.veast - (relative ? own.veast : 0), palette.ais, 1.4);
+        this.vector(x, y, vessel.vnorth - (relative ? own.vnorth : 0), vessel.veast - (relative ? own.veast : 0), palette.ais);
       }
       shown.push({ ...vessel, x, y, isAis: true });
     }
+    this.strokeVectors();
     return shown;
   }
 

@@ -210,7 +210,7 @@ export class Panel {
       rows.push([name, `${Number.isFinite(age) ? `${age} s old` : "nothing received"}${bad}`, Number.isFinite(age) && age < 15 ? "good" : "bad"]);
     }
     for (const [name, one] of Object.entries(status.own ?? {})) {
-      if (one && typeof one === "object" && "source" in one) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source ? "good" : "bad"]);
+      if (one?.source || one?.sources?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source ? "good" : "bad"]);
     }
     if (store.replay) rows.push(["Recording", `${store.replay.paused ? "paused" : "playing"} at ${clock(store.time_s)}`, "good"]);
     byId("sources").hidden = rows.length === 0;
