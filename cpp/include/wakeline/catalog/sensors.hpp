@@ -21,8 +21,8 @@ using Sensors = TypeList<RangeBearing, ConvertedRangeBearing, Position, RangeBea
 using AnySensor = AsVariant<Sensors>;
 
 /// One of the sensors that report M numbers, chosen at run time. It observes as that sensor does;
-/// what a filter corrects by is the model that `visit_model` gives, which is `Fix` for all direct
-/// sensors: of these only the reading matters.
+/// what a filter corrects by is the model that `visit_model` gives, which is a converted plot for
+/// all direct sensors: of others than that only the reading matters.
 template <int M>
 class AnySensorOf {
   template <class Sensor>
@@ -54,9 +54,10 @@ class AnySensorOf {
   decltype(auto) visit_model(Function&& function) const noexcept {
     return std::visit(
         [&]<class Sensor>(const Sensor& sensor) {
-          // A dependent type, so that clang checks the call for direct sensors alone.
-          if constexpr (kIsDirect<Sensor>)
-            return function(std::conditional_t<kIsDirect<Sensor>, Fix, Sensor>{});
+          if constexpr (kIsDirect<Sensor> && !SensorAtPrediction<Sensor>)
+            // A dependent type, so that clang checks the call for these sensors alone.
+            return function(std::conditional_t<kIsDirect<Sensor>, ConvertedRangeBearing, Sensor>{
+                .unbiased = false});
           else
             return function(sensor);
         },
