@@ -20,6 +20,16 @@ using Sensors = TypeList<RangeBearing, ConvertedRangeBearing, Position, RangeBea
 /// One of them.
 using AnySensor = AsVariant<Sensors>;
 
+/// What a filter corrects by for a sensor: of a direct one only the reading matters, unless its
+/// errors are those at the prediction, so that a converted plot serves all direct ones.
+template <class Sensor>
+decltype(auto) model_of(const Sensor& sensor) noexcept {
+  if constexpr (kIsDirect<Sensor> && !SensorAtPrediction<Sensor>)
+    return ConvertedRangeBearing{.unbiased = false};
+  else
+    return (sensor);
+}
+
 /// One of the sensors that report M numbers, chosen at run time. It observes as that sensor does;
 /// what a filter corrects by is the model that `visit_model` gives, which is a converted plot for
 /// all direct sensors: of others than that only the reading matters.
@@ -53,15 +63,7 @@ class AnySensorOf {
   template <class Function>
   decltype(auto) visit_model(Function&& function) const noexcept {
     return std::visit(
-        [&]<class Sensor>(const Sensor& sensor) {
-          if constexpr (kIsDirect<Sensor> && !SensorAtPrediction<Sensor>)
-            // A dependent type, so that clang checks the call for these sensors alone.
-            return function(std::conditional_t<kIsDirect<Sensor>, ConvertedRangeBearing, Sensor>{
-                .unbiased = false});
-          else
-            return function(sensor);
-        },
-        sensor_);
+        [&]<class Sensor>(const Sensor& sensor) { return function(model_of(sensor)); }, sensor_);
   }
 
   /// Own ship that carries it, null of a sensor without one.
