@@ -15,6 +15,7 @@ from . import (
     a823,
     ais_forecast,
     association,
+    consistency,
     dead_reckoning,
     fuzzy_alpha_beta,
     imm,
@@ -33,6 +34,7 @@ __all__ = [
     "a823",
     "ais_forecast",
     "association",
+    "consistency",
     "dead_reckoning",
     "fuzzy_alpha_beta",
     "imm",
@@ -57,6 +59,7 @@ _STUDIES = {
         search,
         usv_navigation,
         association,
+        consistency,
     )
 }
 

@@ -84,6 +84,13 @@ inline double direction_variance_rad2(const Vec<double, 2>& d,
   return across.dot(p * across) / (square * square);
 }
 
+/// atan2(y, x), by its series where it is below 0.2, to 1e-9.
+inline double small_angle(double y, double x) noexcept {
+  if (!(std::fabs(y) < 0.2 * x)) return std::atan2(y, x);
+  const double t = y / x, tt = t * t;
+  return t * (1.0 - tt * (1.0 / 3 - tt * (1.0 / 5 - tt * (1.0 / 7 - tt * (1.0 / 9 - tt / 11)))));
+}
+
 /// The errors of an unbiased converted plot, by where its target is predicted.
 ///
 /// The covariance of such a plot depends on the bearing. Evaluated at the bearing as read it is
@@ -162,7 +169,7 @@ struct ConvertedErrors {
     const Vec<double, 2> u = d / std::sqrt(square), across(-u[1], u[0]);
     const Vec<double, 2> seen = reading.mean - antenna;
     const double range_m = std::sqrt(seen.squaredNorm() / (1.0 + spread));
-    const double apart_rad = std::atan2(across.dot(seen), u.dot(seen));
+    const double apart_rad = small_angle(across.dot(seen), u.dot(seen));
     const double gain = s2 / (s2 + spread);
     const double bent = range_m * s2;
     const double along_m2 = range_var_m2 + bent * bent * (1.0 - gain * gain) / 2.0;

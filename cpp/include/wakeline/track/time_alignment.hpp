@@ -24,6 +24,11 @@ class TimeAlignment {
         period_s_(period_s),
         maneuver_m2s3_(maneuver_m2s3) {}
 
+  /// The position of a plot as read, at the track's time.
+  [[nodiscard]] Vec<double, 2> moved(const ScanPlot& plot) const noexcept {
+    return plot.position.mean + (time_s_ - plot.time_s) * velocity_;
+  }
+
   /// A plot beside the prediction of the track, at the track's time.
   [[nodiscard]] Gaussian<2> at_prediction(const ScanPlot& plot) const noexcept {
     const Vec<double, 2> way_m = (time_s_ - plot.time_s) * velocity_;

@@ -55,6 +55,9 @@ class TrackGate {
     plots.for_each_near(track.position(), reach_m, [&](int index) {
       const ScanPlot& plot = plots[index];
       const Mat<double, 2, 2> added_m2 = alignment.added_m2(plot);
+      const Mat<double, 2, 2> generous_r =
+          kElsewhere * outlier_variance_ * plot.position.covariance + added_m2;
+      if (!modes.gate(alignment.moved(plot), generous_r, threshold_)) return;
       const Gaussian<2> there = alignment.at_prediction(plot);
       const ValidatedPlot moved{index, there.mean, there.covariance + added_m2,
                                 outlier_variance_ * there.covariance + added_m2};
@@ -67,9 +70,9 @@ class TrackGate {
   [[nodiscard]] double threshold() const noexcept { return threshold_; }
 
  private:
-  /// How much larger the covariance of a plot is at the prediction than as read: a tenth of the
-  /// range.
-  static constexpr double kElsewhere = 1.2;
+  /// How much larger the covariance of a plot may be at the prediction than as read, by which plots
+  /// far outside are left out at less expense.
+  static constexpr double kElsewhere = 1.5;
 
   double threshold_;
   double outlier_variance_;
