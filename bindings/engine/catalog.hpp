@@ -14,7 +14,8 @@ namespace wakeline {
 extern template class AnyFilterOf<Filters>;
 extern template Correction<2> AnyFilter::correct_by(const RangeBearing&,
                                                     const Gaussian<2>&) noexcept;
-extern template Correction<2> AnyFilter::correct_by(const Fix&, const Gaussian<2>&) noexcept;
+extern template Correction<2> AnyFilter::correct_by(const ConvertedRangeBearing&,
+                                                    const Gaussian<2>&) noexcept;
 extern template Correction<3> AnyFilter::correct_by(const RangeBearingDoppler&,
                                                     const Gaussian<3>&) noexcept;
 extern template class AnyFilterBankOf<Filters>;

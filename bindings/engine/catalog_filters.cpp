@@ -7,7 +7,8 @@ namespace wakeline {
 template class AnyFilterOf<Filters>;
 template class AnyFilterBankOf<Filters>;
 template Correction<2> AnyFilter::correct_by(const RangeBearing&, const Gaussian<2>&) noexcept;
-template Correction<2> AnyFilter::correct_by(const Fix&, const Gaussian<2>&) noexcept;
+template Correction<2> AnyFilter::correct_by(const ConvertedRangeBearing&,
+                                             const Gaussian<2>&) noexcept;
 template Correction<3> AnyFilter::correct_by(const RangeBearingDoppler&,
                                              const Gaussian<3>&) noexcept;
 

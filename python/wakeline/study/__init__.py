@@ -15,6 +15,7 @@ from . import (
     a823,
     ais_forecast,
     association,
+    consistency,
     dead_reckoning,
     fusion,
     fuzzy_alpha_beta,
@@ -34,6 +35,7 @@ __all__ = [
     "a823",
     "ais_forecast",
     "association",
+    "consistency",
     "dead_reckoning",
     "fusion",
     "fuzzy_alpha_beta",
@@ -59,6 +61,7 @@ _STUDIES = {
         search,
         usv_navigation,
         association,
+        consistency,
         fusion,
     )
 }

@@ -36,6 +36,8 @@ from .estimators import learning_filter, peaked, turn_filter, turn_imm
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from wakeline.scenario.scenario import AnyTruth
+
 RADARS = {
     "coastal_60m": RadarSimulator(60.0, np.deg2rad(0.5), period_s=3.0),
     "coastal_15m": RadarSimulator(15.0, np.deg2rad(0.1), period_s=2.5),
@@ -135,13 +137,17 @@ def scenes(radar: str) -> list[Scenario]:
 
 
 def after_turn(scenario: Scenario) -> np.ndarray:
-    """Scans (T,) in a turn, or less than 30 s after its start or end.
+    """Scans (T,) in a turn, or less than 30 s after its start or end."""
+    return turning(scenario.truth, scenario.time_s)
+
+
+def turning(truth: AnyTruth, time_s: np.ndarray) -> np.ndarray:
+    """Whether times (n,) are in a turn, or less than 30 s after its start or end.
 
     A vessel turns where its course changes by more than 1.5 deg/s, averaged over 10 s.
     """
-    time_s = scenario.time_s
-    fine_s = np.arange(0.0, time_s[-1] + _WINDOW_S, 1.0)
-    velocity = scenario.truth.state_at(fine_s)[:, 1::2]
+    fine_s = np.arange(0.0, time_s.max(initial=0.0) + _WINDOW_S, 1.0)
+    velocity = truth.state_at(fine_s)[:, 1::2]
     course_deg = np.degrees(np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0])))
     half = int(_WINDOW_S / 2)
     rate_deg_s = (course_deg[2 * half :] - course_deg[: -2 * half]) / _WINDOW_S

@@ -217,5 +217,68 @@ TEST(SensorParameters, AWrongOneIsNamed) {
       std::string::npos);
 }
 
+/// Mean and covariance of what `of(plot)` makes of plots of one target.
+template <class Function>
+Gaussian<2> moments(const PolarErrors& errors, const Vec<double, 2>& target, const Function& of) {
+  constexpr int kDraws = 40'000;
+  Draw draw(12);
+  const Vec<double, 2> exact = RangeBearing{.own = errors.own}.measure(target);
+  Vec<double, 2> sum = Vec<double, 2>::Zero();
+  Mat<double, 2, 2> squares = Mat<double, 2, 2>::Zero();
+  for (int k = 0; k < kDraws; ++k) {
+    const Gaussian<2> plot =
+        of(errors.position<double>(exact[0] + errors.range_std_m * draw.normal(),
+                                   exact[1] + errors.bearing_std_rad * draw.normal(), true));
+    const Vec<double, 2> error = plot.mean - target;
+    sum += error / kDraws;
+    squares += error * error.transpose() / kDraws;
+  }
+  return {sum, squares - sum * sum.transpose()};
+}
+
+// Where the target is known, the covariance is that of its plots, whatever they read.
+TEST(ConvertedErrors, AreTheMomentsOfThePlotsOfATarget) {
+  const PolarErrors errors{40.0, deg(3), 0.0, 0.0, {.north_m = 300.0, .east_m = -100.0}};
+  for (const double range_m : {200.0, 4e3, 30e3}) {
+    const Vec<double, 2> target = errors.own.position<double>() + range_m * towards(2.0);
+    const Gaussian<2> known{target, 1e-6 * Mat<double, 2, 2>::Identity()};
+    const auto at = [&](const Gaussian<2>& plot) { return errors.converted().at(plot, known); };
+    const Gaussian<2> found = moments(errors, target, at);
+    const Mat<double, 2, 2> said = at({target, Mat<double, 2, 2>::Identity()}).covariance;
+    const Cholesky<2> cholesky(said);
+    ASSERT_TRUE(cholesky.ok());
+    // Whitened, so that the short axis counts as much as the long one.
+    const Mat<double, 2, 2> once = cholesky.whiten<2>(found.covariance);
+    const Mat<double, 2, 2> white = cholesky.whiten<2>(Mat<double, 2, 2>(once.transpose()));
+    EXPECT_LT((white - Mat<double, 2, 2>::Identity()).norm(), 0.06) << range_m;
+    EXPECT_LT(cholesky.whiten<1>(found.mean).norm(), 4.0 / 200.0);
+    const auto in_sight = [&](const Gaussian<2>& plot) {
+      return errors.converted().in_sight(plot, known);
+    };
+    const Gaussian<2> sight = moments(errors, target, in_sight);
+    const Mat<double, 2, 2> narrow = in_sight({target, {}}).covariance;
+    EXPECT_NEAR(sight.covariance.trace() / narrow.trace(), 1.0, 0.03) << range_m;
+    EXPECT_NEAR(towards(2.0).dot(sight.covariance * towards(2.0)), 1600.0, 60.0) << range_m;
+  }
+}
+
+TEST(ConvertedErrors, AddTheErrorsOfOwnShipAndEcho) {
+  const PolarErrors bare{40.0, deg(1), 0.0, 0.0, {}};
+  PolarErrors all = bare;
+  all.extent_std_m = 3.0;
+  all.own.position_std_m = 4.0;
+  const Gaussian<2> target{{3000.0, 4000.0}, 100.0 * Mat<double, 2, 2>::Identity()};
+  const Gaussian<2> plot{{3010.0, 3990.0}, Mat<double, 2, 2>::Identity()};
+  for (const bool sight : {false, true}) {
+    const auto of = [&](const PolarErrors& errors) {
+      return sight ? errors.converted().in_sight(plot, target)
+                   : errors.converted().at(plot, target);
+    };
+    EXPECT_TRUE(matrices_near((of(all).covariance - of(bare).covariance).eval(),
+                              (25.0 * Mat<double, 2, 2>::Identity()).eval(),
+                              {.absolute = 1e-8, .relative = 0}));
+  }
+}
+
 }  // namespace
 }  // namespace wakeline::conversion_test

@@ -51,12 +51,13 @@ TEST(TrackGate, HoldsEveryPlotWithinTheThresholdOfAModeAndNoOther) {
     std::set<int> found, expected;
     for (const ValidatedPlot& plot : gate.validate(of.track, of.modes, alignment, plots)) {
       found.insert(plot.plot);
-      EXPECT_EQ(plot.z, alignment.position(plots[plot.plot]));
+      EXPECT_EQ(plot.z, alignment.at_prediction(plots[plot.plot]).mean);
     }
     for (int k = 0; k < plots.size(); ++k) {
+      const Gaussian<2> there = alignment.at_prediction(plots[k]);
       const Mat<double, 2, 2> r =
-          config.outlier_variance() * plots[k].position.covariance + alignment.added_m2(plots[k]);
-      if (of.modes.evidence(alignment.position(plots[k]), r).least_nis <= gate.threshold())
+          config.outlier_variance() * there.covariance + alignment.added_m2(plots[k]);
+      if (of.modes.evidence(there.mean, r).least_nis <= gate.threshold())
         expected.insert(k);
     }
     EXPECT_EQ(found, expected);

@@ -11,6 +11,7 @@
 
 #include "wakeline/catalog/belief.hpp"
 #include "wakeline/catalog/motions.hpp"
+#include "wakeline/catalog/sensors.hpp"
 #include "wakeline/catalog/type_list.hpp"
 #include "wakeline/filter/alpha_beta.hpp"
 #include "wakeline/filter/ekf.hpp"
@@ -51,16 +52,12 @@ class AnyFilterOf {
         sensor, [&](const auto& model) { return correct(model, sensor.observe(z)).scored(); });
   }
 
-  /// Corrects the belief by a reading that the sensor has observed. Of a direct sensor only the
-  /// reading matters, so that one instantiation serves all. An alpha-beta filter misses those of
-  /// any other.
+  /// Corrects the belief by a reading that the sensor has observed. An alpha-beta filter misses
+  /// those of a sensor that is not direct.
   template <class Sensor>
   Correction<Sensor::kMeasurements> correct(
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements>& reading) noexcept {
-    if constexpr (kIsDirect<Sensor>)
-      return correct_by(Fix{}, reading);
-    else
-      return correct_by(sensor, reading);
+    return correct_by(model_of(sensor), reading);
   }
 
   void archive(Archive& fields);

@@ -20,9 +20,19 @@ using Sensors = TypeList<RangeBearing, ConvertedRangeBearing, Position, RangeBea
 /// One of them.
 using AnySensor = AsVariant<Sensors>;
 
+/// What a filter corrects by for a sensor: of a direct one only the reading matters, unless its
+/// errors are those at the prediction, so that a converted plot serves all direct ones.
+template <class Sensor>
+decltype(auto) model_of(const Sensor& sensor) noexcept {
+  if constexpr (kIsDirect<Sensor> && !SensorAtPrediction<Sensor>)
+    return ConvertedRangeBearing{.unbiased = false};
+  else
+    return (sensor);
+}
+
 /// One of the sensors that report M numbers, chosen at run time. It observes as that sensor does;
-/// what a filter corrects by is the model that `visit_model` gives, which is `Fix` for all direct
-/// sensors: of these only the reading matters.
+/// what a filter corrects by is the model that `visit_model` gives, which is a converted plot for
+/// all direct sensors: of others than that only the reading matters.
 template <int M>
 class AnySensorOf {
   template <class Sensor>
@@ -53,14 +63,7 @@ class AnySensorOf {
   template <class Function>
   decltype(auto) visit_model(Function&& function) const noexcept {
     return std::visit(
-        [&]<class Sensor>(const Sensor& sensor) {
-          // A dependent type, so that clang checks the call for direct sensors alone.
-          if constexpr (kIsDirect<Sensor>)
-            return function(std::conditional_t<kIsDirect<Sensor>, Fix, Sensor>{});
-          else
-            return function(sensor);
-        },
-        sensor_);
+        [&]<class Sensor>(const Sensor& sensor) { return function(model_of(sensor)); }, sensor_);
   }
 
   /// Own ship that carries it, null of a sensor without one.

@@ -111,6 +111,26 @@ constexpr void check_sensor() noexcept {
         "wakeline: this sensor reads a component that the state of the motion model does not hold");
 }
 
+/// An observed reading as a filter takes it: of a `SensorAtPrediction` beside the belief over
+/// `kComponents`, else as it is.
+template <auto kComponents, class Sensor, class Scalar, int N>
+[[gnu::always_inline]] inline Gaussian<Sensor::kMeasurements, Scalar> at_prediction(
+    const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading,
+    const Gaussian<N, Scalar>& belief) noexcept {
+  if constexpr (SensorAtPrediction<Sensor>) {
+    constexpr int kReads = kReadsOf<Sensor>;
+    constexpr auto kRows = rows_read<Sensor>(kComponents);
+    Gaussian<kReads, Scalar> read;
+    unroll<kReads>([&](int j) {
+      read.mean[j] = belief.mean[kRows[j]];
+      unroll<kReads>([&](int i) { read.covariance(i, j) = belief.covariance(kRows[i], kRows[j]); });
+    });
+    return sensor.at_prediction(reading, read);
+  } else {
+    return reading;
+  }
+}
+
 /// P Hᵀ of a sensor that reads `kRows` of the state, and S = H P Hᵀ + R in place of R.
 template <class Sensor, auto kRows, class Scalar, int N, int M, int Reads>
 [[gnu::always_inline]] inline void project(const Mat<Scalar, N, N>& p,

@@ -65,7 +65,7 @@ class Ekf : public Belief<MotionType, ScalarType> {
       const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) const noexcept {
     if (!this->started_)
       return failed_correction<Sensor::kMeasurements, Scalar>(Status::kNotStarted);
-    return Innovation<Sensor>(*this, sensor, reading);
+    return Innovation<Sensor>(*this, sensor, seen(sensor, reading));
   }
 
   /// Updates the belief with the reading z of a sensor.
@@ -83,9 +83,10 @@ class Ekf : public Belief<MotionType, ScalarType> {
   /// The same with an observed reading; the likelihood in two factors.
   template <class Sensor>
   WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
-      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& observed) noexcept {
     constexpr int kM = Sensor::kMeasurements;
     if (!this->started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
+    decltype(auto) reading = seen(sensor, observed);
     Innovation<Sensor> innovation(*this, sensor, reading);
     Correction<kM, Scalar> correction = innovation;
     const auto taken = ok(innovation.status);
@@ -107,6 +108,17 @@ class Ekf : public Belief<MotionType, ScalarType> {
   }
 
  private:
+  /// An observed reading beside the belief.
+  template <class Sensor>
+  [[gnu::always_inline]] decltype(auto) seen(
+      const Sensor& sensor,
+      const Gaussian<Sensor::kMeasurements, Scalar>& observed) const noexcept {
+    if constexpr (SensorAtPrediction<Sensor>)
+      return at_prediction<kComponents>(sensor, observed, this->belief_);
+    else
+      return (observed);
+  }
+
   template <class Filter, class BeliefType, class... Known>
   friend StatusOf<typename Filter::Scalar> predict_from(Filter& filter, const BeliefType& belief,
                                                         typename Filter::Scalar dt_s,
@@ -278,7 +290,7 @@ template <class Motion, class Scalar>
 inline constexpr bool kPredictsInOneStep<Ekf<Motion, Scalar>> = true;
 
 /// The Kalman filter: an Ekf with a linear motion model and linear sensors, so that nothing is
-/// approximated.
+/// linearised.
 template <class MotionType, class ScalarType = double>
 class Kalman : public Ekf<MotionType, ScalarType> {
   static_assert(!MotionModel<MotionType> || LinearMotionModel<MotionType>,

@@ -183,11 +183,14 @@ class SquareRootUkf {
   /// The same with an observed reading; the likelihood in two factors.
   template <class Sensor>
   [[gnu::noinline]] WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
-      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& observed) noexcept {
     using std::sqrt;
     check_sensor<Sensor, SquareRootUkf>();
     constexpr int kM = Sensor::kMeasurements;
     if (!started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
+    Gaussian<kM, Scalar> reading = observed;
+    if constexpr (SensorAtPrediction<Sensor>)
+      reading = at_prediction<kComponents>(sensor, observed, estimate());
     const Mat<Scalar, kStates, kPoints> sigma = points();
     const MeasuredPoints<kComponents, Sensor, Scalar> images(sensor, mean_, sigma);
     const Vec<Scalar, kM> shift = weighted_sum(images.differences);

@@ -99,10 +99,12 @@ class Ukf : public Belief<MotionType, ScalarType> {
   /// The same with an observed reading; the likelihood in two factors.
   template <class Sensor>
   [[gnu::noinline]] WAKELINE_FLATTEN Correction<Sensor::kMeasurements, Scalar> correct(
-      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& reading) noexcept {
+      const Sensor& sensor, const Gaussian<Sensor::kMeasurements, Scalar>& observed) noexcept {
     check_sensor<Sensor, Ukf>();
     constexpr int kM = Sensor::kMeasurements;
     if (!this->started_) return failed_correction<kM, Scalar>(Status::kNotStarted);
+    const Gaussian<kM, Scalar> reading =
+        at_prediction<kComponents>(sensor, observed, this->belief_);
     const Cholesky<kStates, Scalar>& root = this->root();
     if (none(root.ok())) return failed_correction<kM, Scalar>(Status::kNotPositiveDefinite);
 

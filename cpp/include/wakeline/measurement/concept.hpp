@@ -57,6 +57,16 @@ concept BendingSensor = requires(const Sensor& sensor, const Vec<double, Sensor:
   { sensor.moved_to(x, z) } -> SameSize<Vec<double, kReadsOf<Sensor>>>;
 };
 
+/// A sensor whose errors depend on where its target is, as those of a converted plot do:
+/// `at_prediction(reading, x_r) -> Gaussian<M>` is an observed reading beside the prediction of the
+/// components it reads, mean and covariance. Filters correct by that.
+template <class Sensor>
+concept SensorAtPrediction = requires(const Sensor& sensor,
+                                      const Gaussian<Sensor::kMeasurements>& reading,
+                                      const Gaussian<kReadsOf<Sensor>>& x) {
+  { sensor.at_prediction(reading, x) } -> std::convertible_to<Gaussian<Sensor::kMeasurements>>;
+};
+
 /// True for a sensor that declares with `static constexpr bool kDirect = true` that `measure`
 /// returns the components it reads: its `jacobian` is the identity.
 template <class Sensor>

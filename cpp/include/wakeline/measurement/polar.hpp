@@ -83,6 +83,114 @@ inline bool conversion_bias_matters(double range_m, double range_std_m,
   return conversion_bias_ratio(range_m, range_std_m, bearing_std_rad) > 0.4;
 }
 
+/// Variance (rad²) of the direction in which an antenna sees a target at d with covariance P: that
+/// across the line of sight over d², d not zero.
+inline double direction_variance_rad2(const Vec<double, 2>& d,
+                                      const Mat<double, 2, 2>& p) noexcept {
+  const double square = d.squaredNorm();
+  const Vec<double, 2> across(-d[1], d[0]);
+  return across.dot(p * across) / (square * square);
+}
+
+/// atan2(y, x), by its series where it is below 0.2, to 1e-9.
+inline double small_angle(double y, double x) noexcept {
+  if (!(std::fabs(y) < 0.2 * x)) return std::atan2(y, x);
+  const double t = y / x, tt = t * t;
+  return t * (1.0 - tt * (1.0 / 3 - tt * (1.0 / 5 - tt * (1.0 / 7 - tt * (1.0 / 9 - tt / 11)))));
+}
+
+/// The errors of an unbiased converted plot, by where its target is predicted.
+///
+/// The covariance of such a plot depends on the bearing. Evaluated at the bearing as read it is
+/// correlated with the error of that, which pulls estimates outwards by about r sb² (7 m at 24 km
+/// with 1 degree); evaluated at the prediction it is not. With d ~ N(m, P) the target relative to
+/// the antenna and M = E[d dᵀ] = m mᵀ + P,
+///
+///     R = sinh(sb²) (tr M + sr²) I - (1 - exp(-sb²)) M + exp(-sb²) sr² M / tr M + se² I
+///
+/// is the mean over the prediction of the exact covariance (in the third term, of its factors).
+/// Source: S. V. Bordonaro, P. Willett, Y. Bar-Shalom, "Decorrelated unbiased converted measurement
+/// Kalman filter", IEEE Trans. AES-50, 2014, written without angles.
+struct ConvertedErrors {
+  double range_var_m2 = 0.0;
+  double spread = 0.0;           ///< exp(sb²) - 1
+  double isotropic_m2 = 0.0;     ///< se²
+  double range_bearing_m = 0.0;  ///< covariance of range and bearing, m rad
+  double antenna_north_m = 0.0;
+  double antenna_east_m = 0.0;
+
+  /// The plot as read (north/east) beside the prediction of its target: with its covariance there,
+  /// and moved outwards by r s²/2, because a target with the standard deviation s of its direction
+  /// is on average so much less far along the line of sight. As read where s > 2 sb: then the plot
+  /// knows the direction better than the prediction.
+  template <class Scalar>
+  [[gnu::always_inline]] Gaussian<2, Scalar> at(const Gaussian<2, Scalar>& reading,
+                                                const Gaussian<2, Scalar>& target) const noexcept {
+    constexpr double kLeast_m2 = 1e-6, kVague = 4.0;
+    const double shrink = spread / (1.0 + spread);  // 1 - exp(-sb²)
+    const double turned = (spread + shrink) / 2.0;  // sinh(sb²)
+    const Mat<Scalar, 2, 2>& p = target.covariance;
+    const Scalar x = target.mean[0] - Scalar(antenna_north_m);
+    const Scalar y = target.mean[1] - Scalar(antenna_east_m);
+    const Scalar xx = x * x + p(0, 0), xy = x * y + p(1, 0), yy = y * y + p(1, 1);
+    const Scalar square = at_least(xx + yy, Scalar(kLeast_m2));
+    const Scalar inverse = reciprocal(square);
+    const Scalar isotropic = Scalar(turned) * square + Scalar(turned * range_var_m2 + isotropic_m2);
+    const Scalar along = Scalar((1.0 - shrink) * range_var_m2) * inverse - Scalar(shrink);
+    const Scalar across_m4 = x * x * p(1, 1) + y * y * p(0, 0) - Scalar(2) * x * y * p(1, 0);
+    const Scalar distance2 = x * x + y * y;
+    const auto known = across_m4 <= Scalar(kVague * spread) * distance2 * distance2;
+    const Scalar outwards = select(known, Scalar(0.5) * across_m4 * inverse * inverse, Scalar(0));
+    Scalar nn = isotropic + along * xx, ne = along * xy, ee = isotropic + along * yy;
+    if (range_bearing_m != 0.0) {
+      const Scalar common = Scalar(range_bearing_m) * inverse_sqrt(square);
+      nn -= Scalar(2) * common * x * y;
+      ne += common * (x * x - y * y);
+      ee += Scalar(2) * common * x * y;
+    }
+    const Mat<Scalar, 2, 2>& r = reading.covariance;
+    Gaussian<2, Scalar> plot;
+    plot.mean << reading.mean[0] + outwards * x, reading.mean[1] + outwards * y;
+    plot.covariance(0, 0) = select(known, nn, r(0, 0));
+    plot.covariance(1, 1) = select(known, ee, r(1, 1));
+    plot.covariance(1, 0) = plot.covariance(0, 1) = select(known, ne, r(1, 0));
+    return plot;
+  }
+
+  /// The same along the line of sight and across it, for a target whose direction is known: range
+  /// and bearing keep their own errors, so that one that is many standard deviations off in bearing
+  /// is none off in range. With the bearing δ from the predicted direction, whose standard
+  /// deviation is s, and K = s² / (s² + sb²)
+  ///
+  ///     along = r (1 - K² δ²/2), variance sr² + r² s⁴ (1 - K²)/2;  across = r δ, variance r² sb²
+  ///
+  /// to second order: an update that moves the target across by r K δ leaves it on its circle. By
+  /// `at` where s is above 0.1 rad or 2 sb.
+  [[nodiscard]] Gaussian<2> in_sight(const Gaussian<2>& reading,
+                                     const Gaussian<2>& target) const noexcept {
+    constexpr double kStraight_rad2 = 0.01;
+    const Vec<double, 2> antenna(antenna_north_m, antenna_east_m);
+    const Vec<double, 2> d = target.mean - antenna;
+    const double square = d.squaredNorm();
+    const double s2 = direction_variance_rad2(d, target.covariance);
+    if (!(s2 <= std::min(kStraight_rad2, 4.0 * spread))) return at(reading, target);
+    const Vec<double, 2> u = d / std::sqrt(square), across(-u[1], u[0]);
+    const Vec<double, 2> seen = reading.mean - antenna;
+    const double range_m = std::sqrt(seen.squaredNorm() / (1.0 + spread));
+    const double apart_rad = small_angle(across.dot(seen), u.dot(seen));
+    const double gain = s2 / (s2 + spread);
+    const double bent = range_m * s2;
+    const double along_m2 = range_var_m2 + bent * bent * (1.0 - gain * gain) / 2.0;
+    const double turned = gain * apart_rad;
+    Gaussian<2> plot{antenna + range_m * ((1.0 - turned * turned / 2.0) * u + apart_rad * across),
+                     oriented_covariance<double>(u, along_m2, range_m * range_m * spread)};
+    plot.covariance.diagonal().array() += isotropic_m2;
+    const double common_m2 = range_m * range_bearing_m;
+    plot.covariance += common_m2 * (u * across.transpose() + across * u.transpose());
+    return plot;
+  }
+};
+
 /// Errors of a radar measurement of range and bearing: of the radar, of the echo and of own ship.
 ///
 /// The echo of a vessel moves about its hull with `extent_std_m` per axis, which adds to own ship's
@@ -107,6 +215,16 @@ struct PolarErrors {
   /// Variance of the true bearing (rad²): radar and heading.
   [[nodiscard]] double bearing_variance_rad2() const noexcept {
     return variance(kAngleStd, bearing_std_rad) + own.heading_std_rad * own.heading_std_rad;
+  }
+
+  /// The same errors of a plot converted without bias.
+  [[nodiscard]] ConvertedErrors converted() const noexcept {
+    return {range_variance_m2(),
+            std::expm1(bearing_variance_rad2()),
+            isotropic_variance_m2(),
+            0.0,
+            own.north_m,
+            own.east_m};
   }
 
   /// Plot `[range, bearing]` to north/east in the plane, with all errors.

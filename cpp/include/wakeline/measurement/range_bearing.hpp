@@ -103,8 +103,10 @@ struct RangeBearing {
 };
 
 /// A plot `[range m, bearing rad]` converted to north/east with its covariance, which makes it a
-/// linear measurement: the form of the papers. `unbiased` corrects mean and covariance for the
-/// curvature of the bearing error.
+/// linear measurement. With `unbiased` mean and covariance are corrected for the curvature of the
+/// bearing error, and filters take the covariance at their prediction (`ConvertedErrors`); without
+/// it they take that of the bearing as read, the form of the papers, whose estimates are too far
+/// out where r sb² is not small beside the error of the range.
 struct ConvertedRangeBearing {
   static constexpr const char* kName = "ConvertedRangeBearing";
   static constexpr const char* kSummary =
@@ -126,13 +128,21 @@ struct ConvertedRangeBearing {
     return field_table(
         radar_fields<C>(),
         field("unbiased", &C::unbiased,
-              "Mean and covariance are corrected for the curvature of the bearing error."));
+              "Mean and covariance are corrected for the curvature of the bearing error, and the "
+              "covariance is that at a filter's prediction."));
   }
 
   /// The plot in north/east.
   template <class Scalar>
   Gaussian<2, Scalar> observe(const Vec<Scalar, 2>& z) const noexcept {
     return errors().position(z[0], z[1], unbiased);
+  }
+
+  /// An observed plot beside the prediction of its target.
+  template <class Scalar>
+  Gaussian<2, Scalar> at_prediction(const Gaussian<2, Scalar>& reading,
+                                    const Gaussian<2, Scalar>& position) const noexcept {
+    return unbiased ? errors().converted().at(reading, position) : reading;
   }
 
   template <class Scalar>

@@ -31,6 +31,7 @@ struct FreePlot {
   Gaussian<2> position;
   double time_s;
   double beam_rad;  ///< as in `ScanPlot`
+  ConvertedErrors errors = {};
 };
 
 /// The free plots of the turn before, found by position. Memory is taken by the constructor.
@@ -69,7 +70,7 @@ class FreePlots {
            double least) noexcept {
     for (int k = 0; k < plots.size() && plots_.size() < capacity_; ++k)
       if (free_probability[static_cast<std::size_t>(k)] > least && !plots[k].waits)
-        plots_.push_back({plots[k].position, plots[k].time_s, plots[k].beam_rad});
+        plots_.push_back({plots[k].position, plots[k].time_s, plots[k].beam_rad, plots[k].errors});
   }
 
   /// Drops the plots up to an angle of the beam.
@@ -94,6 +95,7 @@ class FreePlots {
       fields(plot.position.covariance);
       fields(plot.time_s);
       fields(plot.beam_rad);
+      fields(plot.errors);
     }
     if (fields.loading()) sort(static_cast<std::size_t>(found));
   }
@@ -212,11 +214,15 @@ class TrackInitiation {
     return std::min(odds / (1.0 + odds), kMostExistence);
   }
 
+  /// Of both plots beside the middle between them, as each plot alone is correlated with its
+  /// covariance.
   [[nodiscard]] Gaussian<4> belief(const Radar& radar, const FreePlot& earlier,
                                    const ScanPlot& later) const noexcept {
-    const Gaussian<4> of_plots =
-        two_point<double>(with_outliers(earlier.position), with_outliers(later.position),
-                          later.time_s - earlier.time_s);
+    const Gaussian<2> middle{(earlier.position.mean + later.position.mean) / 2,
+                             (earlier.position.covariance + later.position.covariance) / 4};
+    const Gaussian<4> of_plots = two_point<double>(
+        with_outliers(earlier.errors.at(earlier.position, middle)),
+        with_outliers(later.errors.at(later.position, middle)), later.time_s - earlier.time_s);
     if (!(config_.start_speed_factor > 0.0)) return of_plots;
     return with_speed_prior(of_plots, std::sqrt(prior_velocity(radar).covariance(0, 0)));
   }

@@ -84,12 +84,18 @@ struct Radar {
                          compass_angle(blind_to_rad - blind_from_rad));
   }
 
+  /// The errors of a plot, to be taken where its target is predicted.
+  [[nodiscard]] ConvertedErrors errors(const Plot& plot) const noexcept;
+
   /// A time by the radar's clock as true time.
   [[nodiscard]] double true_time_s(double time_s) const noexcept { return time_s - time_offset_s; }
 
   friend bool operator==(const Radar&, const Radar&) = default;
 
   void validate() const { validate_fields(*this); }
+
+ private:
+  [[nodiscard]] PolarErrors polar_errors(const Plot& plot) const noexcept;
 };
 
 /// One plot of a scan: when it was seen, where, and from where.
@@ -108,18 +114,29 @@ inline Plot plot_of(const VideoPlot& echo, const OwnShip& own = {}) noexcept {
   return {echo.time_s, echo.range_m, echo.bearing_rad, own, echo.covariance};
 }
 
-inline Gaussian<2> Radar::position(const Plot& plot) const noexcept {
-  if (plot.covariance.isZero(0.0)) return position(plot.range_m, plot.bearing_rad, plot.own);
+inline PolarErrors Radar::polar_errors(const Plot& plot) const noexcept {
   const Mat<double, 2, 2>& r = plot.covariance;
+  if (r.isZero(0.0))
+    return {range_std_m, bearing_std_rad, extent_std_m, bearing_offset_rad, plot.own};
+  return {std::sqrt(r(0, 0)), std::sqrt(r(1, 1)), extent_std_m, bearing_offset_rad, plot.own};
+}
+
+inline Gaussian<2> Radar::position(const Plot& plot) const noexcept {
   const double range_m = plot.range_m - range_offset_m;
-  Gaussian<2> fix = PolarErrors{std::sqrt(r(0, 0)), std::sqrt(r(1, 1)), extent_std_m,
-                                bearing_offset_rad, plot.own}
-                        .position(range_m, plot.bearing_rad, true);
+  Gaussian<2> fix = polar_errors(plot).position(range_m, plot.bearing_rad, true);
+  const Mat<double, 2, 2>& r = plot.covariance;
+  if (r.isZero(0.0)) return fix;
   const Vec<double, 2> u = towards(plot.bearing_rad - bearing_offset_rad);
   const Vec<double, 2> across(-u[1], u[0]);
   const double common_m2 = range_m * (r(0, 1) + r(1, 0)) / 2;
   fix.covariance += common_m2 * (u * across.transpose() + across * u.transpose());
   return fix;
+}
+
+inline ConvertedErrors Radar::errors(const Plot& plot) const noexcept {
+  ConvertedErrors errors = polar_errors(plot).converted();
+  errors.range_bearing_m = (plot.covariance(0, 1) + plot.covariance(1, 0)) / 2;
+  return errors;
 }
 
 }  // namespace wakeline

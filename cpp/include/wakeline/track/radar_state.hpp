@@ -15,6 +15,7 @@
 #include "wakeline/track/look.hpp"
 #include "wakeline/track/plot_ownership.hpp"
 #include "wakeline/track/radar.hpp"
+#include "wakeline/track/reported.hpp"
 #include "wakeline/track/scan_plots.hpp"
 
 namespace wakeline {
@@ -39,6 +40,7 @@ struct RadarState {
   Beam beam;
   OwnShip own;  ///< as of the last plot, moved on
   DetectionProbability detection_probability;
+  PersistentErrors persistent_errors;
   ScanPlots plots;
   ClutterDensity clutter;
   PlotOwnership ownership;
@@ -75,6 +77,7 @@ struct RadarState {
     beam.archive(fields);
     fields(own);
     detection_probability.archive(fields);
+    persistent_errors.archive(fields);
     clutter.archive(fields);
     initiation.archive(fields);
     plots.archive(fields);

@@ -24,9 +24,10 @@ struct ScanPlot {
   double time_s;
   int input;        ///< its index among the plots given to the tracker; -1: of an earlier call
   double beam_rad;  ///< angle of the beam that saw it, unwrapped; NaN where it is not known
-  double wait_until_rad;  ///< it waits while the beam is before that angle
-  bool waits;             ///< for the next call
-  double range_m = 0.0;   ///< from the antenna
+  double wait_until_rad;        ///< it waits while the beam is before that angle
+  bool waits;                   ///< for the next call
+  double range_m = 0.0;         ///< from the antenna
+  ConvertedErrors errors = {};  ///< where its target is predicted
 };
 
 /// The usable plots of one scan, found by position. Memory is taken by the constructor.
@@ -78,7 +79,8 @@ class ScanPlots {
       const double plot_s = std::min(true_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());
       plots_.push_back({position, plot_s, static_cast<int>(k), beam_rad(plot),
-                        -std::numeric_limits<double>::infinity(), false, plot.range_m});
+                        -std::numeric_limits<double>::infinity(), false, plot.range_m,
+                        radar.errors(plot)});
       earliest_s_ = std::min(earliest_s_, plot_s);
     }
     index_.sort();
@@ -116,6 +118,7 @@ class ScanPlots {
       fields(plot.beam_rad);
       fields(plot.wait_until_rad);
       fields(plot.range_m);
+      fields(plot.errors);
       plot.input = -1;
       plot.waits = false;
     }

@@ -18,14 +18,24 @@ class TimeAlignment {
  public:
   TimeAlignment(const Track& track, double period_s, double maneuver_m2s3) noexcept
       : time_s_(track.time_s),
+        position_{track.position(), track.position_covariance()},
         velocity_(track.velocity()),
         velocity_covariance_(track.velocity_covariance()),
         period_s_(period_s),
         maneuver_m2s3_(maneuver_m2s3) {}
 
-  /// The position of a plot at the track's time.
-  [[nodiscard]] Vec<double, 2> position(const ScanPlot& plot) const noexcept {
+  /// The position of a plot as read, at the track's time.
+  [[nodiscard]] Vec<double, 2> moved(const ScanPlot& plot) const noexcept {
     return plot.position.mean + (time_s_ - plot.time_s) * velocity_;
+  }
+
+  /// A plot beside the prediction of the track, at the track's time.
+  [[nodiscard]] Gaussian<2> at_prediction(const ScanPlot& plot) const noexcept {
+    const Vec<double, 2> way_m = (time_s_ - plot.time_s) * velocity_;
+    Gaussian<2> beside =
+        plot.errors.in_sight(plot.position, {position_.mean - way_m, position_.covariance});
+    beside.mean += way_m;
+    return beside;
   }
 
   /// The covariance that the move of that plot adds to its own.
@@ -46,6 +56,7 @@ class TimeAlignment {
 
  private:
   double time_s_;
+  Gaussian<2> position_;
   Vec<double, 2> velocity_;
   Mat<double, 2, 2> velocity_covariance_;
   double period_s_;

@@ -167,7 +167,8 @@ struct Track {
   std::uint32_t history = 0;   ///< bit k: seen k scans ago
   int duplicate_scans = 0;     ///< in a row that a senior track was on the same target
   double plot_m2 = 0.0;        ///< variance of its last plot, per axis (mean of both)
-  double looked_s = 0.0;       ///< when a radar last looked: a plot or a miss
+  Mat<double, 2, 2> stays_m2 = Mat<double, 2, 2>::Zero();  ///< errors of the position that stay
+  double looked_s = 0.0;  ///< when a radar last looked: a plot or a miss
   double seen_until_s = -std::numeric_limits<double>::infinity();
   ///< until then a miss does not count: another sensor has seen it
   /// Of each sensor of bearings or ranges alone, the probability that it sees the target.
@@ -194,6 +195,10 @@ struct Track {
   }
   [[nodiscard]] Vec<double, 2> velocity() const noexcept {
     return {kinematics.mean[1], kinematics.mean[3]};
+  }
+  [[nodiscard]] Mat<double, 2, 2> position_covariance() const noexcept {
+    const auto rows = Eigen::seqN(0, Eigen::fix<2>, Eigen::fix<2>);
+    return kinematics.covariance(rows, rows);
   }
   [[nodiscard]] Mat<double, 2, 2> velocity_covariance() const noexcept {
     return wakeline::velocity_covariance(kinematics);
@@ -230,6 +235,7 @@ struct Track {
     fields(history);
     fields(duplicate_scans);
     fields(plot_m2);
+    fields(stays_m2);
     fields(looked_s);
     fields(seen_until_s);
     fields(in_view);

@@ -47,7 +47,7 @@ class TrackGate {
     const double way_m = alignment.longest_way_m(apart_s);
     const double way_m2 = alignment.added_m2(apart_s).trace();
     const auto reach_m = [&](double plot_m2) {
-      const double outlier_m2 = outlier_variance_ * plot_m2 + way_m2;
+      const double outlier_m2 = kElsewhere * outlier_variance_ * plot_m2 + way_m2;
       // Generous: the widest mode of an estimator may be some times wider than the mixture.
       const double generous_m = own_m + std::sqrt(threshold_ * outlier_m2);
       return std::min(generous_m, modes.reach_m(track.position(), outlier_m2, threshold_)) + way_m;
@@ -55,9 +55,12 @@ class TrackGate {
     plots.for_each_near(track.position(), reach_m, [&](int index) {
       const ScanPlot& plot = plots[index];
       const Mat<double, 2, 2> added_m2 = alignment.added_m2(plot);
-      const ValidatedPlot moved{index, alignment.position(plot),
-                                plot.position.covariance + added_m2,
-                                outlier_variance_ * plot.position.covariance + added_m2};
+      const Mat<double, 2, 2> generous_r =
+          kElsewhere * outlier_variance_ * plot.position.covariance + added_m2;
+      if (!modes.gate(alignment.moved(plot), generous_r, threshold_)) return;
+      const Gaussian<2> there = alignment.at_prediction(plot);
+      const ValidatedPlot moved{index, there.mean, there.covariance + added_m2,
+                                outlier_variance_ * there.covariance + added_m2};
       if (modes.gate(moved.z, moved.outlier_r, threshold_)) validated_.push_back(moved);
     });
     return validated_;
@@ -67,6 +70,10 @@ class TrackGate {
   [[nodiscard]] double threshold() const noexcept { return threshold_; }
 
  private:
+  /// How much larger the covariance of a plot may be at the prediction than as read, by which plots
+  /// far outside are left out at less expense.
+  static constexpr double kElsewhere = 1.5;
+
   double threshold_;
   double outlier_variance_;
   std::vector<ValidatedPlot> validated_;

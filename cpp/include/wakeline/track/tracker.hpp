@@ -221,8 +221,10 @@ class Tracker {
     return estimator_of(track.slot);
   }
 
-  /// The belief of a track of this tracker at a time such as `time_s()`, before its estimate at
-  /// constant velocity; NaN where the time is not finite or so far ahead that the prediction fails.
+  /// The belief of a track of this tracker as it is reported, at a time such as `time_s()`, before
+  /// its estimate at constant velocity; NaN where the time is not finite or so far ahead that the
+  /// prediction fails. To the covariance of the estimator, `Track::kinematics`, it adds errors that
+  /// stay from scan to scan and alterations of course that do not show yet (`reported`).
   [[nodiscard]] Gaussian<4> kinematics_at(const Track& track, double time_s) const noexcept;
 
   /// Until when a scan is processed and a target can be designated: an hour after the last scan, or
@@ -748,6 +750,7 @@ class Tracker {
       if (step_of[k] != nullptr) {
         track.kinematics = step_of[k]->kinematics;
         if (step_of[k]->total > 0.0) scan.total = step_of[k]->total;
+        note_errors(track, probabilities);
       }
       const bool may_miss = !is_awaited(track) && is_covered(track);
       if (scan.total > 0.0 && (may_miss || !readings_[k].empty()))
@@ -786,6 +789,21 @@ class Tracker {
     const CandidatePlot& best = candidates_of(track)[std::size_t(probabilities.best)];
     track.nis = innovation_squared(track.kinematics, best.z, best.nominal_r);
     track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
+  }
+
+  /// Notes what stays of the errors of its most probable plot, and learns from it.
+  void note_errors(Track& track, const AssociationProbabilities& probabilities) noexcept {
+    if (probabilities.best < 0) return;
+    const auto at = static_cast<std::size_t>(probabilities.best);
+    const CandidatePlot& best = candidates_of(track)[at];
+    PersistentErrors& errors = state().persistent_errors;
+    constexpr double kCertain = 0.7;
+    if (is_sure(track) && probabilities.of_candidate[at] > kCertain) errors.learn(track.nis);
+    const ConvertedErrors& of_plot = state().plots[best.plot].errors;
+    const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
+    const Mat<double, 2, 2> position_m2 = track.position_covariance();
+    track.stays_m2 = errors.share() * (best.nominal_r + position_m2) +
+                     bent_m2(track.position() - antenna_m, position_m2);
   }
 
   /// Whether a track was designated for a time to which the scans have not come yet: until then it
@@ -1321,7 +1339,7 @@ ScanReport Tracker<Estimator, Steps>::step(int radar, double time_s, std::span<c
 template <class Estimator, class Steps>
 Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
                                                      double time_s) const noexcept {
-  return wakeline::kinematics_at(track, estimator_of(track), time_s);
+  return reported(wakeline::kinematics_at(track, estimator_of(track), time_s), track.stays_m2);
 }
 
 template <class Estimator, class Steps>

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "wakeline/core/archive.hpp"
+#include "wakeline/measurement/polar.hpp"
+#include "wakeline/track/track.hpp"
+
+namespace wakeline {
+
+/// The share of a radar's errors that stays from scan to scan, learned from the innovations of its
+/// confirmed tracks.
+///
+/// A filter averages errors that are independent from scan to scan. Those that stay, as an echo
+/// wanders along the hull or a bearing is off, are in its estimate, and its covariance does not
+/// know of them. Two signs of them are learned: innovations that are smaller than the errors of the
+/// radar, which must then be elsewhere, and innovations that are larger, by which the errors are
+/// larger than stated. With the normalized innovation squared (NIS) of a plot, χ² of two degrees of
+/// freedom where all is as stated:
+///
+///     w = 1 / E[exp(-NIS/2)] - 1     1, and the scale of what is not an outlier
+///     m = E[min(NIS, 18)] / 2        1, and the scale of all
+///     share = (1/w - 1) if w < 0.9 - 2.3 / sqrt(n), plus (m - 1) if m > 1.05 + 2.3 / sqrt(n)
+///
+/// over the last n looks, about 500 at most. The first counts what does not show against what
+/// does, as errors that wander slowly show in part. Beyond these bounds, which chance seldom
+/// passes, each sets in over a tenth.
+class PersistentErrors {
+ public:
+  void learn(double nis) noexcept {
+    usual_ = kMemory * usual_ + std::exp(-0.5 * nis);
+    all_ = kMemory * all_ + 0.5 * std::min(nis, kMostNis);
+    looks_ = kMemory * looks_ + 1.0;
+  }
+
+  /// The part of the covariance of an innovation.
+  [[nodiscard]] double share() const noexcept {
+    constexpr double kMostShare = 9.0;
+    const double chance = 2.3 / std::sqrt(looks_);
+    const double usual = looks_ / usual_ - 1.0, all = all_ / looks_;
+    const double fewer = (1.0 / usual - 1.0) * beyond(0.9 - chance - usual);
+    const double more = (all - 1.0) * beyond(all - 1.05 - chance);
+    return std::min(fewer + more, kMostShare);
+  }
+
+  void archive(Archive& fields) {
+    fields(usual_);
+    fields(all_);
+    fields(looks_);
+  }
+
+ private:
+  static double beyond(double excess) noexcept { return std::clamp(10.0 * excess, 0.0, 1.0); }
+
+  static constexpr double kPriorLooks = 8.0;
+  static constexpr double kMemory = 0.998;
+  static constexpr double kMostNis = 18.0;
+
+  double usual_ = 0.5 * kPriorLooks;
+  double all_ = kPriorLooks;
+  double looks_ = kPriorLooks;
+};
+
+/// What a belief over north and east leaves out where the direction is uncertain: a target to the
+/// side of the line of sight is less far along it, by r δ²/2 with E[δ⁴] = 3 s⁴.
+inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
+                                 const Mat<double, 2, 2>& covariance) noexcept {
+  const double square = from_antenna.squaredNorm();
+  if (!(square > covariance.trace())) return Mat<double, 2, 2>::Zero();
+  const double s2 = direction_variance_rad2(from_antenna, covariance);
+  return 0.75 * s2 * s2 * from_antenna * from_antenna.transpose();
+}
+
+/// The belief of a track as it is reported: with the errors that stay from scan to scan, and an
+/// alteration of course of `kUnseenTurn_rad` that does not show yet. The estimator goes on without
+/// both.
+inline Gaussian<4> reported(Gaussian<4> kinematics, const Mat<double, 2, 2>& stays_m2) noexcept {
+  constexpr double kUnseenTurn_rad = 0.055;
+  const Vec<double, 2> aside_mps =
+      kUnseenTurn_rad * Vec<double, 2>(-kinematics.mean[3], kinematics.mean[1]);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      kinematics.covariance(2 * i, 2 * j) += stays_m2(i, j);
+      kinematics.covariance(2 * i + 1, 2 * j + 1) += aside_mps[i] * aside_mps[j];
+    }
+  return kinematics;
+}
+
+}  // namespace wakeline
