@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "support/columns.hpp"
@@ -235,37 +236,60 @@ heading_rad : float
               .c_str());
 }
 
+/// The arguments of the call that makes an equal feed; those of the service are in category 062.
+template <class Format>
+Arguments feed_arguments(const AsterixFeed<Format>& feed) {
+  const AsterixFeedConfig& config = feed.config();
+  Arguments arguments;
+  arguments.with("plane", py::cast(feed.plane()))
+      .with("area", int{config.source.area})
+      .with("system", int{config.source.system})
+      .with("interval_s", config.interval_s)
+      .with("hold_off_s", config.hold_off_s)
+      .with("datagram_octets", config.datagram_octets);
+  if constexpr (std::is_same_v<Format, asterix::Cat062>)
+    arguments.with("service", int{config.service}).with("several_radars", config.several_radars);
+  return arguments;
+}
+
+void define_init(py::class_<Cat062Feed>& feed) {
+  feed.def(py::init([](const LocalPlane& plane, std::uint8_t area, std::uint8_t system,
+                       std::uint8_t service, bool several_radars, double interval_s,
+                       double hold_off_s, std::size_t datagram_octets) {
+             return Cat062Feed(plane, {.source = {area, system},
+                                       .service = service,
+                                       .several_radars = several_radars,
+                                       .interval_s = interval_s,
+                                       .hold_off_s = hold_off_s,
+                                       .datagram_octets = datagram_octets});
+           }),
+           py::arg("plane"), py::kw_only(), py::arg("area") = 0, py::arg("system") = 0,
+           py::arg("service") = 1, py::arg("several_radars") = false, py::arg("interval_s") = 0.0,
+           py::arg("hold_off_s") = 60.0, py::arg("datagram_octets") = 1400);
+}
+
+void define_init(py::class_<Cat010Feed>& feed) {
+  feed.def(py::init([](const LocalPlane& plane, std::uint8_t area, std::uint8_t system,
+                       double interval_s, double hold_off_s, std::size_t datagram_octets) {
+             AsterixFeedConfig config;
+             config.source = {area, system};
+             config.interval_s = interval_s;
+             config.hold_off_s = hold_off_s;
+             config.datagram_octets = datagram_octets;
+             return Cat010Feed(plane, config);
+           }),
+           py::arg("plane"), py::kw_only(), py::arg("area") = 0, py::arg("system") = 0,
+           py::arg("interval_s") = 0.0, py::arg("hold_off_s") = 60.0,
+           py::arg("datagram_octets") = 1400);
+}
+
 template <class Format>
 void define_asterix_feed(py::module_& m, const char* name, const char* doc) {
   using Feed = AsterixFeed<Format>;
   py::class_<Feed> feed(m, name, doc);
   define_feed(feed);
-  feed.def("_arguments",
-           [](const Feed& self) {
-             const AsterixFeedConfig& config = self.config();
-             return Arguments()
-                 .with("plane", py::cast(self.plane()))
-                 .with("area", int{config.source.area})
-                 .with("system", int{config.source.system})
-                 .with("service", int{config.service})
-                 .with("several_radars", config.several_radars)
-                 .with("interval_s", config.interval_s)
-                 .with("hold_off_s", config.hold_off_s)
-                 .with("datagram_octets", config.datagram_octets);
-           })
-      .def(py::init([](const LocalPlane& plane, std::uint8_t area, std::uint8_t system,
-                       std::uint8_t service, bool several_radars, double interval_s,
-                       double hold_off_s, std::size_t datagram_octets) {
-             return Feed(plane, {.source = {area, system},
-                                 .service = service,
-                                 .several_radars = several_radars,
-                                 .interval_s = interval_s,
-                                 .hold_off_s = hold_off_s,
-                                 .datagram_octets = datagram_octets});
-           }),
-           py::arg("plane"), py::kw_only(), py::arg("area") = 0, py::arg("system") = 0,
-           py::arg("service") = 1, py::arg("several_radars") = false, py::arg("interval_s") = 0.0,
-           py::arg("hold_off_s") = 60.0, py::arg("datagram_octets") = 1400)
+  define_init(feed);
+  feed.def("_arguments", &feed_arguments<Format>)
       .def(
           "update",
           [](Feed& self, double time_s,
@@ -415,7 +439,8 @@ ValueError
 
 Items: I010/010, 000, 020 (primary radar), 140, 041, 042 (within 32 km), 200, 161, 170 and 500 (with a covariance). The velocity is I010/200, as
 readers disagree on the unit of I010/202. TRE marks the last report of a track, which is sent once; its number, 0 to 4095, then rests for
-`hold_off_s`. Source: EUROCONTROL-SPEC-0149, part 7, edition 1.1. Parameters as for `Cat062Feed`.)doc");
+`hold_off_s`. Source: EUROCONTROL-SPEC-0149, part 7, edition 1.1. Parameters as those of
+`Cat062Feed` with the same names.)doc");
 }
 
 }  // namespace wakeline::python
