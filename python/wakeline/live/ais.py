@@ -147,9 +147,14 @@ def decoded(sentences: tuple[bytes, ...]) -> Any:
     except ModuleNotFoundError:
         raise ModuleNotFoundError(HOW_TO_GET) from None
     try:
-        return pyais.decode(*sentences)
+        message = pyais.decode(*sentences)
     except Exception as error:  # noqa: BLE001 - of any class, by octets of anyone
         raise ValueError(f"{type(error).__name__} {error}") from None
+    needed = ("mmsi", "lat", "lon") if int(message.msg_type) in _POSITION_TYPES else ("mmsi",)
+    for name in needed:
+        if getattr(message, name) is None:
+            raise ValueError(f"the message is cut before {name}")
+    return message
 
 
 class AisPicture:

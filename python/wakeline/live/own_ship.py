@@ -60,10 +60,11 @@ class Source:
     value: list[tuple[float, ...]] = field(default_factory=list)
 
     def add(self, time_s: float, value: tuple[float, ...]) -> None:
-        """Add a reading; one at the time of the last replaces it."""
+        """Add a reading; one at the time of the last replaces it, an older one is not used."""
         self.count += 1
         if self.time_s and time_s <= self.time_s[-1]:
-            self.value[-1] = value
+            if time_s == self.time_s[-1]:
+                self.value[-1] = value
             return
         self.time_s.append(time_s)
         self.value.append(value)
@@ -73,6 +74,12 @@ class Source:
     def age_s(self, time_s: float) -> float:
         """Age of the last reading."""
         return time_s - self.time_s[-1] if self.time_s else math.inf
+
+    def off_s(self, time_s: float) -> float:
+        """From a time to the nearest reading, in either direction."""
+        if not self.time_s:
+            return math.inf
+        return min(abs(time_s - self.time_s[k]) for k in self.around(time_s))
 
     def around(self, time_s: float) -> tuple[int, int]:
         """Index of the readings before and after a time; equal at and beyond the ends."""
@@ -168,9 +175,9 @@ class Ranked:
         return math.inf if self.used is None else max(self.used.age_s(time_s), 0.0)
 
     def fresh(self, time_s: float) -> Source | None:
-        """The source used, unless it is too old."""
+        """The source used, unless its readings are too far from that time."""
         source = self.used
-        if source is None or source.unusable or source.age_s(time_s) > self._age_s:
+        if source is None or source.unusable or source.off_s(time_s) > self._age_s:
             return None
         return source
 
