@@ -115,6 +115,36 @@ def test_bearings_from_the_bow_give_the_track_of_true_bearings():
     np.testing.assert_allclose(last("bow", 1.3), last("north", 0.0), atol=0.5)
 
 
+def test_a_ship_that_turns_under_its_radar_sees_a_still_target_still():
+    rate, period_s, target = math.radians(10.0), 2.5, np.array([1500.0, 600.0])
+    radar = JOYRIDE | {"period_s": period_s, "azimuth": "bow", "forward_m": 20.0}
+    session = wl.live.Session({"radar": [radar], "own": {"heading_std_deg": 0.1}})
+    seen_rad, places = None, []
+    for k in range(40 * 64):
+        t = k / 64.0 * period_s
+        heading = rate * t % math.tau
+        if k % 3 == 0:
+            own = {"north_m": 4.0 * t, "east_m": 0.0, "heading_rad": heading, "time_s": t}
+            own |= {"course_rad": 0.0, "speed_mps": 4.0}
+            session.feed(t, "own", json.dumps({"own": own}).encode())
+        antenna = np.array([4.0 * t, 0.0]) + 20.0 * np.array([math.cos(heading), math.sin(heading)])
+        seen = target - antenna
+        bearing = (math.atan2(seen[1], seen[0]) - heading) % math.tau
+        beam = k / 64.0 * math.tau % math.tau
+        if seen_rad is not None and 0.0 <= (beam - bearing) % math.tau < 0.15:
+            plot = {"time_s": t, "range_m": float(np.hypot(*seen)), "bearing_rad": bearing}
+            session.feed(t, "radar", json.dumps(plot).encode())
+            seen_rad = None
+        if (beam - bearing) % math.tau > 3.0:
+            seen_rad = bearing
+        mark = {"from_rad": beam - math.tau / 64.0, "to_rad": beam, "time_s": t}
+        session.feed(t, "radar", json.dumps({"sector": mark}).encode())
+        if t > 40.0:
+            places += [(one.north_m, one.east_m) for one in session.tracker.tracks()]
+    assert len({one.track_id for one in session.tracker.tracks()}) == 1
+    assert np.hypot(*(np.array(places) - target).T).max() < 15.0
+
+
 def test_plots_without_marks_are_grouped_by_the_period():
     session = joyride_session()
     for t, line in joyride_lines():

@@ -405,6 +405,13 @@ def test_a_wrong_command_line_is_one_line(arguments, capsys):
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
+def test_an_address_in_use_is_named(capsys):
+    with socket.create_server(("127.0.0.1", 0)) as one:
+        url = f"tcp-listen://127.0.0.1:{one.getsockname()[1]}"
+        assert main(["live", "--in", url]) == 2
+    assert url in capsys.readouterr().err
+
+
 def test_settings_are_printed_and_read(tmp_path, capsys):
     assert main(["live", "--print-config", "--in", "udp://0.0.0.0:10110"]) == 0
     path = tmp_path / "live.toml"

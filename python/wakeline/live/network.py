@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -119,10 +119,11 @@ class NetworkInput(_Thread):
         self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
         self.port = self._url.port if self._url.netloc else None
         self._listener: socket.socket | None = None
-        if config.scheme == "udp":
-            self._listener = self._udp_socket()
-        elif config.scheme == "tcp-listen":
-            self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
+        with _naming(config.url):
+            if config.scheme == "udp":
+                self._listener = self._udp_socket()
+            elif config.scheme == "tcp-listen":
+                self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
         if self._listener is not None:
             self.port = self._listener.getsockname()[1]
 
@@ -152,11 +153,11 @@ class NetworkInput(_Thread):
                 break
         if 224 <= int(host.split(".")[0] if host[0].isdigit() else 0) <= 239:
             interface = self._query.get("iface", ["0.0.0.0"])[-1]
-            one.bind((host, port))
+            _bind(one, host, port)
             member = struct.pack("4s4s", socket.inet_aton(host), socket.inet_aton(interface))
             one.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
         else:
-            one.bind((host, port))
+            _bind(one, host, port)
         return one
 
     def _udp(self) -> bool:
@@ -322,11 +323,12 @@ class NetworkOutput(_Thread):
         self.port = self._url.port if self._url.netloc else None
         self._udp: socket.socket | None = None
         self._listener: socket.socket | None = None
-        if config.scheme == "udp":
-            self._udp = self._udp_socket()
-        elif config.scheme == "tcp-listen":
-            self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
-            self.port = self._listener.getsockname()[1]
+        with _naming(config.url):
+            if config.scheme == "udp":
+                self._udp = self._udp_socket()
+            elif config.scheme == "tcp-listen":
+                self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
+                self.port = self._listener.getsockname()[1]
 
     def send(self, octets: bytes) -> None:
         """Send a message; it never waits."""
@@ -481,6 +483,15 @@ class _Client:
             return False
 
 
+@contextlib.contextmanager
+def _naming(url: str) -> Iterator[None]:
+    """Name the URL in errors of its address."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), url) from None
+
+
 def _write_stdout(octets: bytes) -> None:
     sys.stdout.write(octets.decode("ascii", "replace"))
     sys.stdout.flush()
@@ -491,9 +502,17 @@ def _listening(host: str, port: int | None) -> socket.socket:
         raise SettingsError(f"tcp-listen://{host} needs a port")
     one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    one.bind((host, port))
+    _bind(one, host, port)
     one.listen(_MOST_CLIENTS)
     return one
+
+
+def _bind(one: socket.socket, host: str, port: int) -> None:
+    try:
+        one.bind((host, port))
+    except OSError:
+        one.close()
+        raise
 
 
 def _probe(one: socket.socket) -> None:
