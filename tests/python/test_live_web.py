@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import wakeline as wl
 from harbor import CELLS, RANGE_M, ROWS, Harbor
+from wakeline.cli import main
 from wakeline.live.alarms import AlarmLog
 from wakeline.live.playback import Playback, RecordedPlots, RecordedTracks, SessionPlayback
 from wakeline.live.record import Recorder
@@ -537,3 +538,29 @@ def test_a_session_file_is_played_and_set_back(tmp_path):
     assert player.picture()["tracks"] == []
     player.go_to(player.end_s)
     assert same(player.picture(), last)
+
+
+def test_no_target_is_acquired_in_an_exclusion_zone():
+    player = recorded_plots()
+    around = [[-1e5, -1e5], [-1e5, 1e5], [1e5, 1e5], [1e5, -1e5]]
+    assert player.command({"command": "zone", "zone": {"kind": "land", "outline_m": around}})["ok"]
+    player.go_to(player.end_s)
+    assert player.picture()["tracks"] == []
+
+
+def test_view_and_demo_serve_the_screen(tmp_path, capsys):
+    path = tmp_path / "tracks.csv"
+    wl.recording.write_tracks(path, wl.track_recording("joyride"))
+    for command in (["view", str(path), "--alarms", str(tmp_path / "alarms.csv")], ["demo"]):
+        assert main([*command, "--web", "0", "--no-browser", "--for", "0.3"]) == 0
+        assert "http://127.0.0.1:" in capsys.readouterr().out
+    assert (tmp_path / "alarms.csv").exists()
+    (tmp_path / "empty.csv").write_text("time_s\n")
+    for wrong in (
+        ["view", str(tmp_path / "empty.csv")],
+        ["view", str(tmp_path / "nothing.pcap")],
+        ["view", str(path), "--web", "everywhere"],
+        ["view", str(path), "--speed", "0"],
+    ):
+        assert main([*wrong, "--no-browser", "--for", "0.1"]) == 2
+        assert capsys.readouterr().err.count("\n") == 1

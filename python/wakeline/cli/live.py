@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from wakeline.live.alarms import AlarmLog
 from wakeline.live.config import (
     IN_FORMATS,
     OUT_FORMATS,
@@ -83,6 +84,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         metavar="FILE",
         help="record the session (pcap); a file that exists is continued, with the same numbers",
     )
+    parser.add_argument("--alarms", type=Path, metavar="F.csv", help="append alarms to a table")
     parser.add_argument("--replay", type=Path, metavar="SESSION", help="replay a recorded session")
     parser.add_argument(
         "--speed", type=_speed, default=1.0, metavar="X|max", help="of --replay, default 1"
@@ -180,7 +182,12 @@ def _serve(arguments: argparse.Namespace, service: Service, is_done: Any = lambd
         if time.monotonic() >= ends_s or is_done():
             service.stop()
 
-    with _stopped_by_signals(service.stop), _screen(arguments, service.session):
+    with contextlib.ExitStack() as stack:
+        if arguments.alarms is not None:
+            log = stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
+            service.session.watchers[0].log = log
+        stack.enter_context(_stopped_by_signals(service.stop))
+        stack.enter_context(_screen(arguments, service.session))
         service.run(every_s=service.session.config.session.status_s or 1.0, report=report)
 
 

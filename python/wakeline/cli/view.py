@@ -69,14 +69,13 @@ def run(arguments: argparse.Namespace) -> None:
     if len(tracks) == 0:
         raise RecordingError(arguments.file, "there are no tracks", wanted="a row for each scan")
     own = read_own_ship(arguments.own) if arguments.own is not None else None
-    log = AlarmLog(arguments.alarms) if arguments.alarms is not None else None
-    settings = read_settings(arguments.config)
-    show(
-        Playback(
-            RecordedTracks(tracks), own=own, settings=settings, log=log, speed=arguments.speed
-        ),
-        arguments,
-    )
+    source, settings = RecordedTracks(tracks), read_settings(arguments.config)
+    with contextlib.ExitStack() as stack:
+        log = None
+        if arguments.alarms is not None:
+            log = stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
+        player = Playback(source, own=own, settings=settings, log=log, speed=arguments.speed)
+        show(player, arguments)
 
 
 def show(player: Player, arguments: argparse.Namespace) -> None:

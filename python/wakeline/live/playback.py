@@ -42,10 +42,13 @@ class Source(Protocol):
     Attributes
     ----------
     start_s, end_s : float
+    keeps_out : callable
+        Whether places (n, 2) are where no target is acquired.
     """
 
     start_s: float
     end_s: float
+    keeps_out: Callable[[np.ndarray], np.ndarray]
 
     def steps(self, after_s: float, until_s: float) -> list[float]:
         """Times in (after_s, until_s] at which something is new."""
@@ -281,6 +284,7 @@ class Playback(Player):
         self._snapshots: list[tuple[float, bytes]] = []
         self._spacing_s = _SNAPSHOT_S
         self._step_s = -math.inf
+        source.keeps_out = lambda places: self._board.keeps_out(places)
         self._keep()
         self._advance(source.start_s)
 
@@ -475,13 +479,14 @@ class RecordedPlots:
                     self._tracker.latest_time_s, range_m=[], bearing_rad=[]
                 )
                 events += silent.events
+            kept = ~self.keeps_out(scan.position_m)
             events += self._tracker.process(
                 end_s,
-                range_m=scan.range_m,
-                bearing_rad=scan.bearing_rad,
-                plot_time_s=scan.plot_time_s,
-                own_north_m=scan.own_north_m,
-                own_east_m=scan.own_east_m,
+                range_m=scan.range_m[kept],
+                bearing_rad=scan.bearing_rad[kept],
+                plot_time_s=scan.plot_time_s[kept],
+                own_north_m=scan.own_north_m[kept],
+                own_east_m=scan.own_east_m[kept],
             ).events
             self._next += 1
         return events

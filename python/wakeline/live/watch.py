@@ -31,6 +31,7 @@ class AlarmBoard:
     Attributes
     ----------
     alarms : Alarms
+    log : AlarmLog or None
     """
 
     def __init__(
@@ -41,15 +42,15 @@ class AlarmBoard:
         log: AlarmLog | None = None,
     ) -> None:
         self.alarms = Alarms(limits, zones, config)
-        self._log = log
+        self.log = log
 
     def take(self, time_s: float, tracks: Any, **others: Any) -> list[AlarmEvent]:
         """Take the picture at a time: :meth:`Alarms.update`."""
         return self._logged(self.alarms.update(time_s, tracks, **others))
 
     def _logged(self, events: list[AlarmEvent]) -> list[AlarmEvent]:
-        if self._log is not None and events:
-            self._log.write(events)
+        if self.log is not None and events:
+            self.log.write(events)
         return events
 
     def keeps_out(self, place_m: ArrayLike) -> NDArray[np.bool_]:

@@ -34,10 +34,11 @@ class Taken {
 /**
  * Offsets of labels from their symbols.
  * items: [{id, x, y, width, height}] in order of importance; symbols: [{x, y, radius}];
- * before: Map of earlier offsets, tried first so that labels stay. Those without room get none.
+ * covered: boxes [x0, y0, x1, y1] of what lies over the picture; before: Map of earlier offsets, tried first so that labels stay. Those without room get none.
  */
-export function placeLabels(items, symbols, before, bounds, most = 100) {
+export function placeLabels(items, symbols, covered, before, bounds, most = 100) {
   const taken = new Taken();
+  for (const box of covered) taken.add(box);
   for (const { x, y, radius } of symbols) taken.add([x - radius, y - radius, x + radius, y + radius]);
   const offsets = new Map();
   for (const item of items.slice(0, most)) {

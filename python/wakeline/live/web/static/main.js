@@ -573,6 +573,11 @@ function showCursor(here) {
   setText(node, parts.join("\n"));
 }
 
+/** Boxes of what lies over the picture, for labels to keep clear of. */
+function covered() {
+  return ["tools", "own", "card"].map(byId).filter((node) => !node.hidden).map((node) => [node.offsetLeft, node.offsetTop, node.offsetLeft + node.offsetWidth, node.offsetTop + node.offsetHeight]);
+}
+
 const spent = { frames: 0, total_ms: 0, most_ms: 0 };
 let drawn_ms = 0;
 let panel_ms = 0;
@@ -592,7 +597,7 @@ function frame(now_ms) {
   const here = store.ownAt(time_s);
   view.follow(here);
   const palette = PALETTES[settings.palette];
-  const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed };
+  const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed, covered: covered() };
   if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, placeOf(here));
   else echoes.blank(palette);
   overlay.draw(scene);

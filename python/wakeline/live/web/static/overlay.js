@@ -443,7 +443,7 @@ export class Overlay {
       items.sort((a, b) => rank(a.one) - rank(b.one) || near(a.one) - near(b.one));
       const symbols = items.map(({ one }) => ({ x: one.x, y: one.y, radius: one.danger || one.alarmed || one.selected ? 13 : 8 }));
       symbols.push({ x: this.own.x, y: this.own.y, radius: 9 });
-      this.offsets = placeLabels(items, symbols, this.offsets, [4, view.top + 2, view.width - 4, view.height - view.bottom]);
+      this.offsets = placeLabels(items, symbols, this.scene.covered, this.offsets, [4, view.top + 2, view.width - 4, view.height - view.bottom]);
     }
     for (const item of items) {
       const offset = this.offsets.get(item.id);
