@@ -317,7 +317,7 @@ class Tracker {
   static constexpr double kClockPeriods = 10.0;
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 9;
+  static constexpr std::uint32_t kArchiveVersion = 10;
   /// Vessels per area that an identity may be of when it is not of the track at hand.
   static constexpr double kOtherVessels_per_m2 = 1e-8;
   static constexpr double kOtherVelocities_per_m2s2 = 1e-3;  ///< the same of velocities
@@ -366,6 +366,12 @@ class Tracker {
   [[nodiscard]] const Estimator& estimator_of(int slot) const noexcept {
     return estimators_[static_cast<std::size_t>(slot)];
   }
+
+  /// The belief of the estimator of a track at a time.
+  [[nodiscard]] Gaussian<4> belief_at(const Track& track, double time_s) const noexcept {
+    return wakeline::kinematics_at(track, estimator_of(track), time_s);
+  }
+
   Estimator& estimator_at(int slot) noexcept { return estimators_[static_cast<std::size_t>(slot)]; }
   CandidatePlots& candidates_of(const Track& track) noexcept {
     return candidates_[static_cast<std::size_t>(track.slot)];
@@ -975,7 +981,7 @@ class Tracker {
     for (std::size_t k = 0; k < evidence_.size(); ++k) {
       const Track& track = tracks_.at(tracks_.slots()[k]);
       if (!is_about(track, report)) continue;
-      const Gaussian<2> then = position_in(kinematics_at(track, report.time_s));
+      const Gaussian<2> then = position_in(belief_at(track, report.time_s));
       const Gaussian<2> fix = reported_position(report, track, 0.0);
       const Cholesky<2> factor(fix.covariance + then.covariance);
       if (!factor.ok()) continue;
@@ -1339,7 +1345,7 @@ ScanReport Tracker<Estimator, Steps>::step(int radar, double time_s, std::span<c
 template <class Estimator, class Steps>
 Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
                                                      double time_s) const noexcept {
-  return reported(wakeline::kinematics_at(track, estimator_of(track), time_s), track.stays_m2);
+  return reported(belief_at(track, time_s), track.stays_m2);
 }
 
 template <class Estimator, class Steps>
@@ -1421,7 +1427,7 @@ ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& scan) noexcept 
   plot_track_id_.assign(values.size(), 0);
   const double extent_m = state().radar.extent_std_m;
   const auto part_of = [&](const Track& track) {
-    return PartOfPosition(scan, position_in(kinematics_at(track, scan.time_s)), extent_m);
+    return PartOfPosition(scan, position_in(belief_at(track, scan.time_s)), extent_m);
   };
   // How likely each value is by all tracks, and by the one by which it is likeliest.
   value_likelihood_.assign(values.size(), 0.0);
