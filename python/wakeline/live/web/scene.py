@@ -32,6 +32,7 @@ _LOOSE = {  # a smaller change needs no message: absolute, and relative
 _MOVED_M = 2.0
 _MOVED_STDS = 0.5
 _REPEAT_S = 15.0
+_MOVES_PER_S, _FAR = 400.0, 6.0  # so many rows for small moves; large ones are sent at once
 _GONE_KEPT = 5000
 _SECTIONS = ("origin_deg", "radars", "encounters", "alarms", "zones", "status", "limits", "note")
 _MOST_PLOTS = 4000
@@ -84,7 +85,8 @@ class _Table:
             allowed_m = max(_MOVED_M, _MOVED_STDS * std_m)
             off_m = math.hypot(old[2] + dt_s * old[4] - new[2], old[3] + dt_s * old[5] - new[3])
             off_mps = math.hypot(old[4] - new[4], old[5] - new[5])
-            if off_m > allowed_m or off_mps * _REPEAT_S > 4.0 * allowed_m:
+            moved = off_m > allowed_m or off_mps * _REPEAT_S > 4.0 * allowed_m
+            if moved and (dt_s >= len(self.rows) / _MOVES_PER_S or off_m > _FAR * allowed_m):
                 return True
         elif old[2:6] != new[2:6]:
             return True
