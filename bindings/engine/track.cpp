@@ -224,7 +224,7 @@ PyReportResult take_report(AnyTracker& tracker, double time_s, std::string_view 
   };
   require_text("identity", identity, PositionReport::kMostIdentity);
   require_text("source", source, PositionReport::kMostSource);
-  require_in_range("time_s", time_s);
+  require_finite("time_s", time_s);
   require_in_range("north_m", north_m);
   require_in_range("east_m", east_m);
   require_positive("position_std_m", position_std_m);
@@ -253,7 +253,7 @@ PyReport partial(AnyTracker& tracker, const char* what, PositionPart part, int s
   require_shape(values.ndim() == 1, name, "(n,)", values);
   require(sensor >= 0 && sensor < int(kMostPartialSensors), "sensor",
           ("from 0 to " + std::to_string(kMostPartialSensors - 1)).c_str(), sensor);
-  require_in_range("time_s", time_s);
+  require_finite("time_s", time_s);
   own.validate();
   const PartialScan scan{
       part, sensor,         time_s, {values.data(), static_cast<std::size_t>(values.shape(0))},

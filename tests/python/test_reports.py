@@ -8,19 +8,20 @@ import pytest
 import wakeline as wl
 
 RADAR = wl.Radar(range_std_m=10.0, bearing_std_rad=0.01, period_s=2.5)
+EPOCH_S = 1.7e9  # of a clock that tells the day
 START_M = np.array([2000.0, -1500.0])
 VELOCITY_MPS = np.array([-3.0, 6.0])
 
 
 def at(time_s):
     """Where the vessel is."""
-    return START_M + time_s * VELOCITY_MPS
+    return START_M + (time_s - EPOCH_S) * VELOCITY_MPS
 
 
 def seen(tracker, rng, turns, each_turn=lambda time_s: None):
     """Give a tracker turns of the antenna with a plot of the vessel."""
     for turn in turns:
-        time_s = 2.5 * turn
+        time_s = EPOCH_S + 2.5 * turn
         range_m = np.hypot(*at(time_s)) + RADAR.range_std_m * rng.normal()
         bearing_rad = np.arctan2(*at(time_s)[::-1]) + RADAR.bearing_std_rad * rng.normal()
         tracker.process(time_s, range_m=[range_m], bearing_rad=[bearing_rad])
@@ -50,7 +51,7 @@ def test_a_report_gives_its_track_an_identity_and_tells_of_it():
     assert tracker.tracks().identity == [""]
     assert np.isnan(tracker.tracks().identity_time_s[0])
     assert tracker.find("257378500") == 0
-    results = [tracker.report(**report(time_s)) for time_s in (47.0, 49.0)]
+    results = [tracker.report(**report(time_s)) for time_s in (EPOCH_S + 47.0, EPOCH_S + 49.0)]
     assert [result.track_id for result in results] == [1, 1]
     assert [(event.kind, event.identity) for event in results[0].events] == [
         ("identified", "257378500")
@@ -59,10 +60,10 @@ def test_a_report_gives_its_track_an_identity_and_tells_of_it():
     tracks = tracker.tracks()
     assert tracks.identity == ["257378500"]
     assert tracks.identity_probability[0] > 0.9
-    assert tracks.identity_time_s[0] == 49.0
+    assert tracks.identity_time_s[0] == EPOCH_S + 49.0
     assert tracker.find("257378500") == 1
     assert tracker.find("257378500", source="gnss") == 0
-    assert np.hypot(*(tracks.mean[0, ::2] - at(50.0))) < 12.0
+    assert np.hypot(*(tracks.mean[0, ::2] - at(EPOCH_S + 50.0))) < 12.0
     for one in (results[0], tracks):
         copy = pickle.loads(pickle.dumps(one))
         assert repr(copy) == repr(one)
@@ -75,9 +76,9 @@ def test_a_report_far_from_its_track_changes_no_state_but_is_told():
     rng = np.random.default_rng(2)
     seen(tracker, rng, range(1, 21))
     for time_s in (40.0, 45.0, 50.0):
-        tracker.report(**report(time_s))
+        tracker.report(**report(EPOCH_S + time_s))
     before = tracker.tracks().mean.copy()
-    result = tracker.report(**report(50.5, offset_m=(3704.0, 0.0)))
+    result = tracker.report(**report(EPOCH_S + 50.5, offset_m=(3704.0, 0.0)))
     assert {event.kind for event in result.events} >= {"identity_jumps", "identity_disagrees"}
     assert str(result.status) != "ok"
     np.testing.assert_array_equal(tracker.tracks().mean, before)
@@ -102,17 +103,17 @@ def test_a_report_that_makes_no_sense_is_rejected(change):
     seen(tracker, np.random.default_rng(3), range(1, 5))
     before = tracker.save()
     with pytest.raises(ValueError, match=next(iter(change))):
-        tracker.report(**(report(10.0) | change))
+        tracker.report(**(report(EPOCH_S + 10.0) | change))
     assert tracker.save() == before
 
 
 def test_a_report_of_long_ago_or_twice_is_not_an_error_and_changes_nothing():
     tracker = wl.Tracker(RADAR)
     seen(tracker, np.random.default_rng(4), range(1, 81))
-    tracker.report(**report(195.0))
+    tracker.report(**report(EPOCH_S + 195.0))
     before = tracker.save()
     for time_s in (195.0, 190.0, 10.0, 1e4):
-        assert not tracker.report(**report(time_s)).events
+        assert not tracker.report(**report(EPOCH_S + time_s)).events
     assert tracker.save() == before
 
 
@@ -133,7 +134,7 @@ def test_a_precise_part_of_a_position_makes_it_better(sensor):
             elif used:
                 range_m = np.hypot(*at(time_s)) + noise.normal()
                 tracker.ranges(time_s=time_s, range_m=[range_m], range_std_m=1.0)
-            if time_s > 50.0 and len(tracker.tracks()):
+            if time_s > EPOCH_S + 50.0 and len(tracker.tracks()):
                 along = at(time_s) / np.hypot(*at(time_s))
                 measured = along if sensor == "ranges" else np.array([-along[1], along[0]])
                 squares.append(((tracker.tracks().mean[0, ::2] - at(time_s)) @ measured) ** 2)
@@ -146,12 +147,12 @@ def test_a_precise_part_of_a_position_makes_it_better(sensor):
 def test_a_part_that_makes_no_sense_is_rejected():
     tracker = wl.Tracker(RADAR)
     seen(tracker, np.random.default_rng(7), range(1, 21))
-    good = {"time_s": 50.0, "bearing_rad": [0.1], "bearing_std_rad": 0.01}
+    good = {"time_s": EPOCH_S + 50.0, "bearing_rad": [0.1], "bearing_std_rad": 0.01}
     for change in ({"bearing_std_rad": 0.0}, {"bearing_rad": [[0.1]]}, {"sensor": 4}):
         with pytest.raises(ValueError, match=next(iter(change))):
             tracker.bearings(**(good | change))
     with pytest.raises(wl.FilterError):
-        tracker.bearings(**(good | {"time_s": 1e5}))
+        tracker.bearings(**(good | {"time_s": EPOCH_S + 1e5}))
     with pytest.raises(ValueError, match="range_std_m"):
-        tracker.ranges(time_s=50.0, range_m=[1e3], range_std_m=np.nan)
+        tracker.ranges(time_s=EPOCH_S + 50.0, range_m=[1e3], range_std_m=np.nan)
     assert tracker.bearings(**good).plot_track_id.tolist() == [0]

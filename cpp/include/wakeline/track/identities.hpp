@@ -32,11 +32,11 @@ struct PositionReport {
   double velocity_std_mps = 0.0;  ///< per axis; 0: the velocity is not known
   [[nodiscard]] bool has_velocity() const noexcept { return velocity_std_mps > 0.0; }
 
-  /// Whether every number is finite and in range, and the texts are such.
+  /// Whether every number is finite, all but the time in range, and the texts are such.
   [[nodiscard]] bool is_valid() const noexcept {
     return !source.empty() && source.size() <= kMostSource && !identity.empty() &&
            identity.size() <= kMostIdentity && is_utf8(source) && is_utf8(identity) &&
-           in_range(time_s) && in_range(position_m) && position_std_m > 0.0 &&
+           std::isfinite(time_s) && in_range(position_m) && position_std_m > 0.0 &&
            in_range(position_std_m) && in_range(velocity_mps) && velocity_std_mps >= 0.0 &&
            in_range(velocity_std_mps);
   }

@@ -34,7 +34,7 @@ struct PartialScan {
   OwnShip own = {};                     ///< of the sensor at that time
 
   [[nodiscard]] bool is_valid() const noexcept {
-    return sensor >= 0 && sensor < static_cast<int>(kMostPartialSensors) && in_range(time_s) &&
+    return sensor >= 0 && sensor < static_cast<int>(kMostPartialSensors) && std::isfinite(time_s) &&
            std > 0.0 && in_range(std) && false_per_unit > 0.0 && in_range(false_per_unit) &&
            in_range(own.position<double>());
   }
