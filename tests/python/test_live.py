@@ -393,11 +393,11 @@ def test_lines_do_not_depend_on_the_cuts(pieces):
 
 
 @settings(max_examples=100)
-@given(st.lists(st.tuples(st.sampled_from(["nmea", "json", "cat240", ""]), st.binary())))
+@given(st.lists(st.tuples(st.sampled_from(["nmea", "json", "cat240", "spokes", ""]), st.binary())))
 def test_no_octets_are_fatal(pieces):
     inputs = [
         {"url": f"udp://127.0.0.1:1?name={kind or 'any'}", "format": kind}
-        for kind in ("nmea", "json", "cat240", "")
+        for kind in ("nmea", "json", "cat240", "spokes", "")
     ]
     session = wl.live.Session({"input": inputs})
     for k, (kind, octets) in enumerate(pieces):
@@ -463,6 +463,43 @@ def test_signalk_gives_own_ship_and_vessels():
     (vessel,) = picture["ais"]
     assert (vessel["mmsi"], vessel["name"]) == (211000002, "NOOR")
     assert session.status()["inputs"]["sk"]["problems"] == {"Signal K": 1}
+
+
+def varint(value):
+    octets = bytearray()
+    while value > 127:
+        octets.append(value & 127 | 128)
+        value >>= 7
+    return bytes([*octets, value])
+
+
+def spoke(angle, bearing, range_m, pixels):
+    fields = [(0x08, angle), (0x10, bearing), (0x18, range_m), (0x20, 5000)]
+    body = b"".join(bytes([key]) + varint(value) for key, value in fields)
+    body += b"\x2a" + varint(len(pixels)) + pixels
+    return b"\x12" + varint(len(body)) + body
+
+
+@pytest.mark.parametrize("azimuth", ["north", "bow"])
+def test_spokes_are_sweeps(azimuth):
+    url = "signalk://127.0.0.1:3000/radars/one?name=spokes"
+    session = wl.live.Session({"input": [{"url": url}], "radar": [{"azimuth": azimuth}]})
+    seen = []
+    session.sweeps.append(lambda *one: seen.append(one))
+    session.feed(4.0, "spokes", b'{"spokesPerRevolution": 2048, "pixelValues": 16}')
+    session.feed(4.5, "spokes", spoke(1, 1025, 3000, bytes(16)))  # shown from the next on
+    pixels = [bytes([k % 16] * 16) for k in range(8)]
+    message = b"".join(spoke(10 + k, 1034 + k, 3000, one) for k, one in enumerate(pixels))
+    session.feed(5.0, "spokes", message)
+    radar, azimuth_rad, heading_rad, range_m, cells = seen[-1]
+    first = 1034 if azimuth == "north" else 10
+    np.testing.assert_allclose(azimuth_rad, (first + np.arange(8)) * math.tau / 2048)
+    assert (radar, range_m) == ("A", 3000.0)
+    assert math.isnan(heading_rad)
+    np.testing.assert_array_equal(cells, np.array([list(one) for one in pixels]) * 17)
+    for cut in range(len(message)):
+        session.feed(5.0, "spokes", message[:cut])
+    assert set(session.status()["inputs"]["spokes"]["problems"]) == {"spokes"}
 
 
 def test_messages_of_redundant_groups_count_once():

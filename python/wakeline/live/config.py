@@ -27,7 +27,7 @@ IN_SCHEMES = (
     "signalk",
 )
 OUT_SCHEMES = ("udp", "tcp", "tcp-listen", "serial", "file", "stdout")
-IN_FORMATS = ("", "nmea", "json", "cat240", "cat048", "cat010", "signalk")
+IN_FORMATS = ("", "nmea", "json", "cat240", "cat048", "cat010", "signalk", "spokes")
 OUT_FORMATS = ("json", "ttm", "tll", "cat062", "cat010")
 AZIMUTHS = ("north", "bow")
 
@@ -48,8 +48,8 @@ class InputConfig:
     url : str
         ``udp://HOST:PORT``, ``udp://GROUP:PORT?iface=ADDRESS``, ``tcp://HOST:PORT``,
         ``tcp-listen://HOST:PORT``, ``serial:/dev/NAME?baud=38400``, ``stdin:``, ``file:PATH``,
-        ``pcap:PATH``, ``signalk://HOST:PORT``; ``name``, ``format`` and ``radar`` may be given
-        as its query.
+        ``pcap:PATH``, ``signalk://HOST:PORT``, or ``signalk://HOST:PORT/radars/ID`` for the
+        spokes of a radar; ``name``, ``format`` and ``radar`` may be given as its query.
     name : str
         The name in the status; default the URL without its query.
     format : str
@@ -66,7 +66,8 @@ class InputConfig:
     def __post_init__(self) -> None:
         _take_query(self, ("name", "format", "radar"), IN_SCHEMES)
         if self.scheme == "signalk":
-            object.__setattr__(self, "format", "signalk")
+            kind = "spokes" if urlsplit(self.url).path.startswith("/radars/") else "signalk"
+            object.__setattr__(self, "format", kind)
         _check_choice("format", self.format, IN_FORMATS)
 
     @property

@@ -295,7 +295,8 @@ class NetworkInput(_Thread):
 
         try:
             host, port = self._url.hostname or "127.0.0.1", self._url.port or 3000
-            return signalk.receive(host, port, take, self._ends.is_set)
+            radar = self._url.path.removeprefix("/radars/").strip("/")
+            return signalk.receive(host, port, radar, take, self._ends.is_set)
         except ModuleNotFoundError as error:
             raise SettingsError(str(error)) from None
 

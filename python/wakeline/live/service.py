@@ -40,9 +40,7 @@ class Service:
 
     def __init__(self, session: Session, record: str | Path | None = None) -> None:
         self.session = session
-        self.inputs = [
-            NetworkInput(one, self.take) for one in session.config.inputs if one.scheme != "signalk"
-        ]
+        self.inputs = [NetworkInput(one, self.take) for one in session.config.inputs]
         self.outputs = [NetworkOutput(one) for one in session.config.outputs]
         self.lost = 0
         self.ends = threading.Event()

@@ -115,7 +115,10 @@ class Session:
         self._passed_s = -math.inf
         self.journal: Callable[[Mapping[str, Any]], float] | None = None
         self.lost = 0
-        self._shared = Receivers()
+        bow = {one.name for one in self.config.radars if one.azimuth == "bow"}
+        if self.config.radars[0].name in bow:
+            bow.add("")  # inputs that name no radar have the first
+        self._shared = Receivers(from_bow=frozenset(bow))
         self.inputs = {one.name: Source(one, self._shared) for one in self.config.inputs}
         self.outputs: dict[str, Output] = {}
         for one in self.config.outputs:

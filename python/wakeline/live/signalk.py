@@ -16,7 +16,11 @@ from .problems import Problems
 HOW_TO_GET = "Signal K needs aiohttp: pip install 'wakeline[live]'"
 _MMSI = re.compile(r"mmsi:(\d{9})$")
 _OWN = ("vessels.self", "self", "")
-_PERIOD_MS = 200
+_LONGEST = 4 << 20
+_WANTED = {
+    "context": "*",
+    "subscribe": [{"path": "*", "period": 200, "policy": "instant"}],
+}
 
 
 class VesselReading(NamedTuple):
@@ -127,9 +131,12 @@ def _number(value: Any) -> float | None:
 
 
 def receive(
-    host: str, port: int, take: Callable[[float, bytes], None], ends: Callable[[], bool]
+    host: str, port: int, radar: str, take: Callable[[float, bytes], None], ends: Callable[[], bool]
 ) -> bool:
-    """Receive the deltas of a server until it closes the stream (False) or `ends` (True).
+    """Receive the deltas of a server, or the spokes of a radar if one is named.
+
+    Of a radar the capabilities come first. False when the server has closed the stream, True when
+    it `ends`.
 
     Raises
     ------
@@ -142,29 +149,38 @@ def receive(
         import aiohttp
     except ModuleNotFoundError:
         raise ModuleNotFoundError(HOW_TO_GET) from None
-    wanted = {
-        "context": "*",
-        "subscribe": [{"path": "*", "period": _PERIOD_MS, "policy": "instant"}],
-    }
+    server = f"http://{host}:{port}/signalk"
+    radar_url = f"{server}/v2/api/vessels/self/radars/{radar}"
+    stream_url = f"{radar_url}/spokes" if radar else f"{server}/v1/stream?subscribe=none"
 
     async def work() -> bool:
-        url = f"http://{host}:{port}/signalk/v1/stream?subscribe=none"
-        try:
-            async with (
-                aiohttp.ClientSession() as client,
-                client.ws_connect(url, heartbeat=20.0, max_msg_size=1 << 20) as stream,
-            ):
-                await stream.send_json(wanted)
+        async with aiohttp.ClientSession() as client:
+            if radar:
+                async with client.get(f"{radar_url}/capabilities") as answer:
+                    answer.raise_for_status()
+                    take(time.time(), json.dumps(await answer.json()).encode())
+            async with client.ws_connect(
+                stream_url, heartbeat=20.0, max_msg_size=_LONGEST
+            ) as stream:
+                if not radar:
+                    await stream.send_json(_WANTED)
                 while not ends():
                     try:
                         message = await stream.receive(timeout=0.2)
                     except asyncio.TimeoutError:
                         continue
-                    if message.type != aiohttp.WSMsgType.TEXT:
+                    if message.type == aiohttp.WSMsgType.TEXT:
+                        take(time.time(), message.data.encode())
+                    elif message.type == aiohttp.WSMsgType.BINARY:
+                        take(time.time(), message.data)
+                    else:
                         return False
-                    take(time.time(), message.data.encode())
-        except aiohttp.ClientError as error:
-            raise OSError(str(error)) from None
-        return True
+                return True
 
-    return asyncio.run(work())
+    async def in_words() -> bool:
+        try:
+            return await work()
+        except (aiohttp.ClientError, asyncio.TimeoutError) as error:
+            raise OSError(str(error) or type(error).__name__) from None
+
+    return asyncio.run(in_words())

@@ -16,6 +16,7 @@ from .nmea import AisMessage, NmeaDecoder
 from .problems import Problems
 from .radar_feed import SensorClock
 from .signalk import SignalkDecoder, VesselReading
+from .spokes import SpokeFeed
 from .video_feed import VideoFeed
 
 _RATE_S = 5.0
@@ -74,11 +75,13 @@ class RecentMessages:
 
 @dataclass
 class Receivers:
-    """What the inputs of a session share: video and plots of each radar by its name."""
+    """What the inputs of a session share, by the names of radars; some measure from the bow."""
 
     video: dict[str, VideoFeed] = field(default_factory=dict)
     plots: dict[str, AsterixFeed] = field(default_factory=dict)
+    spokes: dict[str, SpokeFeed] = field(default_factory=dict)
     recent: RecentMessages = field(default_factory=RecentMessages)
+    from_bow: frozenset[str] = frozenset()
 
 
 class Source:
@@ -144,6 +147,9 @@ class Source:
             for line in self._lines.feed(octets, self.problems):
                 for reading in self._signalk.feed(line, self.problems):
                     yield ("vessel" if isinstance(reading, VesselReading) else "own"), reading
+        elif kind == "spokes":
+            for each in self._spoke_feed().feed(time_s, octets, self.problems):
+                yield "radar", each
         elif kind == "cat240" or kind in _PLOTS:
             if not self._shared.recent.is_new(time_s, octets):
                 self.duplicates += 1
@@ -153,6 +159,13 @@ class Source:
         elif octets:
             wanted = "wanted NMEA, JSON or ASTERIX"
             self.problems.add("unknown", f"{wanted}, got {octets[:24]!r}")
+
+    def _spoke_feed(self) -> SpokeFeed:
+        feeds = self._shared.spokes
+        if self.radar not in feeds:
+            feeds[self.radar] = SpokeFeed(self.radar in self._shared.from_bow)
+        self.video = feeds[self.radar].video
+        return feeds[self.radar]
 
     def _receiver(self, kind: str) -> VideoFeed | AsterixFeed:
         """What decodes the messages of its radar."""

@@ -121,7 +121,7 @@ class VideoFeed:
         if len(received_s) != len(found.offset):
             received_s = np.full(len(found.offset), times[-1])
         for sweeps in self._of_one_geometry(found, received_s, problems):
-            yield from self._process(sweeps)
+            yield from self.take(sweeps)
 
     # ------------------------------------------------------------------ sweeps
 
@@ -184,7 +184,8 @@ class VideoFeed:
 
     # ------------------------------------------------------------------ plots
 
-    def _process(self, sweeps: Sweeps) -> Iterator[PlotRow | Sector]:
+    def take(self, sweeps: Sweeps) -> Iterator[PlotRow | Sector]:
+        """Take sweeps of one geometry in order; plots and sectors that end with them."""
         if self.show is not None:
             cells = sweeps.amplitude
             if cells.dtype != np.uint8:
