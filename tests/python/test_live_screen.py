@@ -381,6 +381,23 @@ def test_a_sector_is_drawn_about_own_ship(page, harbor):
     assert zone.to_rad + heading == pytest.approx(1.1, abs=0.02)
 
 
+def test_a_drag_moves_the_picture_and_measures(page, harbor):
+    show(page, harbor)
+    page.drag(polar(page, 1.0, 500.0), polar(page, 1.0, 1500.0))
+    shown = page.run("wakeline.view.toScreen(0, 0)")
+    box = page.run("wakeline.view.middle")
+    moved_m = math.hypot(shown[0] - box[0], shown[1] - box[1]) / page.run("wakeline.view.scale")
+    assert moved_m == pytest.approx(1000.0, abs=15.0)
+    page.press("#center")
+    page.wait_for("Math.hypot(...wakeline.view.offset) === 0")
+    settle(page)
+    page.press("[data-tool=measure]")
+    page.drag(polar(page, 0.0, 0.0), polar(page, 2.0, 1400.0))
+    (line,) = page.run("wakeline.tools.measures")
+    assert line["bearing"] == pytest.approx(2.0, abs=0.02)
+    assert line["range_m"] == pytest.approx(1400.0, abs=15.0)
+
+
 def test_the_table_is_sorted_by_danger(page, harbor):
     danger = {"cpa_m": 100.0, "tcpa_s": 300.0, "probability": 0.9}
     near = {"cpa_m": 2000.0, "tcpa_s": 100.0, "probability": 0.05}
