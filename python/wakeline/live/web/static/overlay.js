@@ -231,7 +231,12 @@ export class Overlay {
     const { x, y } = target;
     const alert = target.danger || target.alarmed;
     c.strokeStyle = this.colorOf(target);
-    if (!(target.flashes && blink)) {
+    if (target.flashes && blink) {
+      c.lineWidth = 1;
+      c.beginPath();
+      c.arc(x, y, TARGET_PX, 0, TURN);
+      c.stroke();
+    } else {
       if (alert) {
         c.lineWidth = 2.5;
         c.beginPath();
