@@ -284,7 +284,8 @@ def many_tracks(tracks: int = 1000, false_plots: int = 400, turns: int = 40) -> 
     )
     settings = config.settings
     more = settings.tracker | {"max_tracks": 4000, "max_plots": 4000}
-    session = Session(replace(config, settings=replace(settings, tracker=more)))
+    danger = settings.danger | {"cpa_limit_m": 100.0}  # of vessels 500 m apart
+    session = Session(replace(config, settings=replace(settings, tracker=more, danger=danger)))
     rng = np.random.default_rng(0)
     side = math.ceil(math.sqrt(tracks))
     place_m = 500.0 * np.stack(np.divmod(np.arange(tracks), side), axis=1) + 2000.0
