@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 VERSION = 1
@@ -187,8 +187,3 @@ def finite_only(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def lines_in(octets: bytes) -> Iterator[bytes]:
-    """The lines of a message, without blank ones."""
-    return (line for line in octets.splitlines() if line.strip())

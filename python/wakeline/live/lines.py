@@ -43,7 +43,3 @@ class LineAssembly:
             problems.add("long line", f"wanted at most {self._longest} octets a line")
             self._drops = True
         self._rest = b"" if self._drops else rest
-
-    def finish(self, problems: Problems) -> Iterator[bytes]:
-        """The last line, where the stream ends without an end of line."""
-        yield from self.feed(b"\n", problems)

@@ -270,9 +270,13 @@ class NetworkInput(_Thread):
 
     def _file(self) -> bool:
         self.connection = "reading"
+        last = b""
         with Path(self._path()).open("rb") as file:
             while not self._ends.is_set() and (octets := file.read(_PIECE)):
                 self._take(self.config.name, [(now_s(), octets)])
+                last = octets[-1:]
+        if b" " <= last <= b"~":  # a last line without an end
+            self._take(self.config.name, [(now_s(), b"\n")])
         return True
 
     def _pcap(self) -> bool:
