@@ -63,6 +63,7 @@ def show(page, harbor, settings="", tracks=None, range_m=RANGE_M):
     page.wait_for("window.wakeline?.store.version > 0")
     page.wait_for("wakeline.store.tracks.size === arguments[0]", count)
     page.wait_for("wakeline.spent.frames > 3")
+    page.errors()  # of the pages before
 
 
 def with_echoes(page, harbor, echoes=ECHOES):
@@ -474,6 +475,7 @@ def test_a_replay_is_set_and_stopped(page):
         playback.start()
         try:
             page.open(server.url)
+            page.errors()
             page.wait_for("!document.querySelector('#replay')?.hidden")
             page.press("#play")
             page.wait_for("wakeline.store.replay.paused")

@@ -390,7 +390,7 @@ class PlainPainter {
 
   /** For each pixel of half the resolution its row and column, once for a range and a rotation. */
   table(radar, view, width, height, center) {
-    const key = [width, height, view.range_m, view.rotation.toFixed(3), ...center.map((v) => (v * view.scale).toFixed(1)), radar.rows, radar.columns, radar.range_m].join();
+    const key = [width, height, ...view.middle, view.range_m, view.rotation.toFixed(3), ...center.map((v) => (v * view.scale).toFixed(1)), radar.rows, radar.columns, radar.range_m].join();
     if (key === this.key) return;
     this.key = key;
     this.index = new Int32Array(width * height);
