@@ -185,6 +185,30 @@ def test_plots_in_an_exclusion_zone_start_no_track():
     assert session.status()["radars"]["A"]["excluded_plots"] > 40
 
 
+def test_a_vessel_that_reports_gives_its_track_an_identity():
+    session = wl.live.Session({"radar": [JOYRIDE | {"position_deg": [54.0, 10.0]}]})
+    lines = written(session)
+    for k in range(40):
+        t, north_m = 3.0 * k, 2000.0 - 15.0 * k
+        for identity, east_m in (("257000001", 300.0), ("257000002", 1500.0)):
+            bearing_rad = math.atan2(east_m, north_m)
+            plot = {"time_s": t, "range_m": math.hypot(north_m, east_m), "bearing_rad": bearing_rad}
+            session.feed(t, "radar", json.dumps(plot).encode())
+            report = {"source": "ais", "identity": identity, "time_s": t, "north_m": north_m}
+            report |= {"east_m": east_m, "course_rad": math.pi, "speed_mps": 5.0}
+            if identity.endswith("1") and k > 10:
+                session.feed(t, "ais", json.dumps({"report": report}).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        session.feed(t, "radar", json.dumps(mark).encode())
+    assert session.status()["inputs"]["ais"]["problems"] == {}
+    identities = {one["east_m"] > 900.0: one["identity"] for one in session.picture()["tracks"]}
+    assert identities == {False: "257000001", True: ""}
+    rows = [json.loads(line) for line in lines]
+    assert "257000001" in [row["identity"] for row in rows if row["type"] == "track"]
+    (named,) = [row for row in rows if row.get("event") == "identified"]
+    assert named["identity"] == "257000001"
+
+
 def test_operators_name_drop_and_acquire():
     session = joyride_session()
     for t, line in joyride_lines(60):

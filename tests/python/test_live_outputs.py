@@ -7,10 +7,7 @@ import numpy as np
 import pytest
 
 import wakeline as wl
-from wakeline import _engine
 from wakeline.live.demo import rmc
-
-pytestmark = pytest.mark.skipif(not hasattr(_engine, "wire"), reason="the engine has no wire yet")
 
 ORIGIN_DEG = (54.0, 10.0)
 PLANE = wl.LocalPlane(latitude_rad=math.radians(54.0), longitude_rad=math.radians(10.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from wakeline import _engine
+from wakeline._engine import wire
 
 from .problems import Problems
 from .radar_feed import PlotRow, Sector, SensorClock
@@ -31,7 +31,7 @@ class AsterixFeed:
     def __init__(self) -> None:
         self.clock = SensorClock()
         self.test_plots = 0
-        self._decoder = _engine.wire.AsterixDecoder()
+        self._decoder = wire.AsterixDecoder()
         self._source: int | None = None
         self._edge_rad = math.nan
         self._edge_s = -math.inf

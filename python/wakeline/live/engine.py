@@ -222,8 +222,6 @@ class TrackEngine:
 
         The arguments are those of ``Tracker.report``; velocities that are not finite are unknown.
         """
-        if not hasattr(self._tracker, "report"):
-            return []
         if not math.isfinite(report["vnorth_mps"] + report["veast_mps"]):
             report |= {"vnorth_mps": None, "veast_mps": None}
         return _events(self._tracker.report(**report).events)
@@ -231,8 +229,6 @@ class TrackEngine:
 
 def _identities(table: wl.track.TrackTable, which: np.ndarray) -> list[list[Any]]:
     """Columns of identity, its probability and the time of its last report."""
-    if not hasattr(table, "identity"):
-        return []
     names = table.identity
     return [
         [names[k] for k in which.tolist()],
@@ -249,7 +245,7 @@ def _events(events: Sequence[wl.Event]) -> list[dict[str, Any]]:
             "time_s": event.time_s,
             "reason": event.reason,
         }
-        | ({"identity": event.identity} if getattr(event, "identity", "") else {})
+        | ({"identity": event.identity} if event.identity else {})
         for event in events
         if event.track_id > 0
     ]

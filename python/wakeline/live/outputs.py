@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from wakeline import _engine
+from wakeline._engine import wire
 
 from .config import OutputConfig
 from .engine import LiveTrack
@@ -127,9 +127,7 @@ class TtmOutput(WireOutput):
     def _make(self, session: Session) -> Any:
         periods = [radar.period_s for radar in session.tracker.radars]
         interval_s = max(_LEAST_INTERVAL_S, *periods)
-        return _engine.wire.TtmFeed(
-            session.plane, interval_s=interval_s, tll=self.config.format == "tll"
-        )
+        return wire.TtmFeed(session.plane, interval_s=interval_s, tll=self.config.format == "tll")
 
     def _more(self, session: Session) -> dict[str, Any]:
         heading = session.own.heading_at(session.time_s)
@@ -144,8 +142,8 @@ class AsterixOutput(WireOutput):
 
     def _make(self, session: Session) -> Any:
         if self.config.format == "cat010":
-            return _engine.wire.Cat010Feed(session.plane)
-        return _engine.wire.Cat062Feed(session.plane, several_radars=len(session.radars) > 1)
+            return wire.Cat010Feed(session.plane)
+        return wire.Cat062Feed(session.plane, several_radars=len(session.radars) > 1)
 
     def _more(self, session: Session) -> dict[str, Any]:
         return {"covariance": session.shown.covariance, "coasting": session.shown.coasting}
@@ -162,10 +160,7 @@ _KINDS = {
 
 def make_output(config: OutputConfig) -> Output:
     """The output of a format."""
-    kind = _KINDS[config.format]
-    if kind is not JsonOutput and not hasattr(_engine, "wire"):
-        return Output(config)
-    return kind(config)
+    return _KINDS[config.format](config)
 
 
 def _nowhere(octets: bytes) -> None:
