@@ -26,6 +26,7 @@ from ._engine import (
     navigation,
     track,
     video,
+    wire,
 )
 from ._engine.batch import lanes, set_threads, threads
 from ._engine.core import (
@@ -130,6 +131,7 @@ for _noun in (
     navigation,
     track,
     video,
+    wire,
 ):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
