@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # Adds a motion model, a sensor and a tracker setting to a copy of the tree as CONTRIBUTING.md says, builds the copy and
 # uses them in C++ and in Python. Each model is its header and one line of the catalog; the setting is one place.
+#
+#   bash tests/addition/run.sh          both
+#   bash tests/addition/run.sh --cpp    C++ alone, in half a minute
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../python/setup.sh" tests
 here=$root/tests/addition tree=$root/build/addition/tree build=$root/build/addition/build
@@ -28,6 +31,7 @@ add "$include/track/config.hpp" '        field("detection_probability"' \
 
 "$CXX" -std=c++20 -I "$tree/cpp/include" -isystem /usr/include/eigen3 "$here/use.cpp" -o "$build.use"
 "$build.use"
+if [[ ${1:-} == --cpp ]]; then exit; fi
 
 cmake -S "$tree" -B "$build" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DWAKELINE_TESTS=OFF -DWAKELINE_EXAMPLES=OFF \
   -DWAKELINE_PYTHON=ON -DPython_EXECUTABLE="$python" --log-level=WARNING
