@@ -73,9 +73,9 @@ def test_sectors_of_any_width_score_as_turns_do(name):
     )
     for edges_rad in (*(np.linspace(0.0, TURN, n + 1) for n in (8, 16, 32, 64)), uneven):
         of = score(name, edges_rad)
-        # Two boats that pass near own ship and each other cost a number on autoferry.
-        assert of.ids - turns.ids <= (name == "autoferry")
-        assert of.switches - turns.switches <= (name == "autoferry")
+        # Two boats that pass near own ship and each other cost one number on autoferry, or two.
+        assert of.ids - turns.ids <= 2 * (name == "autoferry")
+        assert of.switches - turns.switches <= 2 * (name == "autoferry")
         assert of.coverage >= turns.coverage - 1.001 * turns.targets / turns.eligible_scans
         for error, rel in (
             ("position_rmse_m", 0.05),
