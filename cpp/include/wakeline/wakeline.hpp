@@ -158,6 +158,7 @@
 #include "wakeline/track/plot_ownership.hpp"
 #include "wakeline/track/radar.hpp"
 #include "wakeline/track/radar_state.hpp"
+#include "wakeline/track/reported.hpp"
 #include "wakeline/track/scan_plots.hpp"
 #include "wakeline/track/start.hpp"
 #include "wakeline/track/strobe_config.hpp"
