@@ -74,7 +74,7 @@ ATTRIBUTE = re.compile(
     r"    @\1\.setter\n    def \1\(self, [^\n]*\) -> None:\n        \.\.\.\n"
 )
 HOMES = {
-    "core": ["Gaussian", "Step"],
+    "core": ["Gaussian", "Status", "Step"],
     "navigation": ["LocalPlane"],
     "measurement": [
         "ConvertedRangeBearing",

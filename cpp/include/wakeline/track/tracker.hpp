@@ -317,7 +317,7 @@ class Tracker {
   static constexpr double kClockPeriods = 10.0;
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 10;
+  static constexpr std::uint32_t kArchiveVersion = 11;
   /// Vessels per area that an identity may be of when it is not of the track at hand.
   static constexpr double kOtherVessels_per_m2 = 1e-8;
   static constexpr double kOtherVelocities_per_m2s2 = 1e-3;  ///< the same of velocities
@@ -1177,6 +1177,9 @@ class Tracker {
       if (in_use != radar.in_use) fields.fail();
       if (radar.in_use) fields.rules(radar.radar);
     }
+    if (!fields.ok()) return;
+    fields(at_hand_);
+    if (!has_radar(at_hand_)) fields.fail();
     if (!fields.ok()) return;
     fields(time_s_);
     fields(started_);
