@@ -175,8 +175,9 @@ class Tracker {
   ///
   /// They update the confirmed tracks, start none, and tell of no misses. Values between several
   /// tracks are shared by their likelihoods. The time may be as far from the last scan as that of a
-  /// report; the estimate of a later time takes them as its velocity says. `plot_track_id` is of
-  /// each value up to `max_plots` the track it most probably belongs to.
+  /// report; the estimate of a later time takes them as its velocity says. Errors of such a sensor
+  /// stay for a while: values that come faster than the antenna turns count as much as one a turn.
+  /// `plot_track_id` is of each value up to `max_plots` the track it most probably belongs to.
   ScanReport partial(const PartialScan& scan) noexcept;
 
   /// The vessel that a track is believed to be by its reports, or null; `time_s` is that of its
@@ -292,6 +293,7 @@ class Tracker {
   void copy_state_from(const Tracker& other) noexcept {
     radars_ = other.radars_;
     at_hand_ = other.at_hand_;
+    partial_s_ = other.partial_s_;
     time_s_ = other.time_s_;
     started_ = other.started_;
     full_ = other.full_;
@@ -325,6 +327,7 @@ class Tracker {
   static constexpr double kReportGate = 16.0;                ///< squared standard deviations
   static constexpr double kPartialGate = 9.0;                ///< the same of a bearing or range
   static constexpr double kPartialDetection = 0.7;           ///< a target in view gives one
+  static constexpr double kLeastPartialPeriods = 0.01;       ///< between two scans of such a sensor
   static constexpr double kViewMemory = 0.98;                ///< from scan to scan of such a sensor
   static constexpr double kSure = 0.9;  ///< a report updates a track that it is of by this much
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
@@ -355,6 +358,12 @@ class Tracker {
     for (const RadarState& radar : radars_)
       if (radar.in_use) longest_s = std::max(longest_s, radar.radar.period_s);
     return longest_s;
+  }
+
+  static constexpr std::array<double, kMostPartialSensors> never() noexcept {
+    std::array<double, kMostPartialSensors> times{};
+    times.fill(-std::numeric_limits<double>::infinity());
+    return times;
   }
 
   ScanReport rejected(Status status) noexcept {
@@ -1181,6 +1190,7 @@ class Tracker {
     fields(at_hand_);
     if (!has_radar(at_hand_)) fields.fail();
     if (!fields.ok()) return;
+    fields(partial_s_);
     fields(time_s_);
     fields(started_);
     fields(full_);
@@ -1217,6 +1227,7 @@ class Tracker {
   std::vector<int> waiting_;    ///< and of those whose gate it is in
   std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
   std::vector<int> competing_;  ///< both
+  std::array<double, kMostPartialSensors> partial_s_ = never();  ///< when each gave values last
   std::vector<double> value_likelihood_;  ///< by value of a partial scan, of all tracks
   std::vector<double> value_best_;        ///< and of the likeliest
   std::vector<double> evidence_;          ///< by place in the list of tracks, of a report
@@ -1419,11 +1430,16 @@ ReportResult Tracker<Estimator, Steps>::report(const PositionReport& report) noe
 }
 
 template <class Estimator, class Steps>
-ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& scan) noexcept {
+ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& given) noexcept {
+  PartialScan scan = given;
   if (!scan.is_valid() || (started_ && scan.time_s > time_s_ + kOldestReport_s))
     return rejected(Status::kNotFinite);
   if (started_ && scan.time_s < time_s_ - kOldestReport_s)
     return rejected(Status::kNegativeTimeStep);
+  double& before_s = partial_s_[static_cast<std::size_t>(scan.sensor)];
+  const double periods = std::abs(scan.time_s - before_s) / longest_period_s();
+  scan.std /= std::sqrt(std::clamp(periods, kLeastPartialPeriods, 1.0));
+  before_s = std::max(before_s, scan.time_s);
   events_.clear();
   const std::span<const double> values =
       scan.values.first(std::min(scan.values.size(), static_cast<std::size_t>(config_.max_plots)));
