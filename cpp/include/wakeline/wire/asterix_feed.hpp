@@ -161,10 +161,10 @@ struct Cat010 {
     using namespace cat010;
     const ReportedTrack& track = record.track;
     const auto& mean = track.kinematics.mean;
-    const bool near = std::max(std::abs(mean[0]), std::abs(mean[2])) < 32767.0;
+    const bool fits = std::max(std::abs(mean[0]), std::abs(mean[2])) < 32767.0;
     const auto bit = [](Item item, bool present = true) { return std::uint64_t{present} << item; };
     block.specify(bit(kSource) | bit(kMessageType) | bit(kDescriptor) | bit(kTimeOfDay) |
-                  bit(kWgs84) | bit(kCartesian, near) | bit(kVelocityPolar) | bit(kTrackNumber) |
+                  bit(kWgs84) | bit(kCartesian, fits) | bit(kVelocityPolar) | bit(kTrackNumber) |
                   bit(kTrackStatus) | bit(kDeviation, track.has_covariance));
     block.put(1, record.config.source.area);
     block.put(1, record.config.source.system);
@@ -173,7 +173,7 @@ struct Cat010 {
     block.put(3, day_ticks(track.time_s));
     const GeoPoint place = record.place();
     put_place(block, place, 31);
-    if (near) {
+    if (fits) {
       block.put(2, signed_steps(mean[2], 1.0, 16));
       block.put(2, signed_steps(mean[0], 1.0, 16));
     }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -53,8 +52,7 @@ class TtmFeed {
       : plane_(plane), config_(config), schedule_(kNumbers, config.interval_s, config.hold_off_s) {
     const auto capital = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); };
     if (config.talker.size() != 2 || !capital(config.talker[0]) || !capital(config.talker[1]))
-      throw std::invalid_argument("talker must be two capital letters or digits, got \"" +
-                                  config.talker + "\"");
+      reject("talker must be two capital letters or digits, got \"" + config.talker + "\"");
   }
   explicit TtmFeed(const LocalPlane& plane) : TtmFeed(plane, Config{}) {}
 
