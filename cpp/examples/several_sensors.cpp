@@ -32,8 +32,8 @@ int main() {
                                         vessel_imm(radars[0]));
   std::multimap<double, std::function<void()>> inputs;  // by time of arrival
   for (int number = 0; number < 2; ++number)
-    for (int k = 0; k * radars[number].period_s < kEnd_s * kSectors; ++k) {
-      const Radar& radar = radars[number];
+    for (int k = 0; k * radars[std::size_t(number)].period_s < kEnd_s * kSectors; ++k) {
+      const Radar& radar = radars[std::size_t(number)];
       const double end_s = (k + 1) * radar.period_s / kSectors;
       const double from_rad = k % kSectors * kSector_rad, to_rad = from_rad + kSector_rad;
       std::vector<Plot> plots;

@@ -183,7 +183,7 @@ Score score_of(const std::vector<Station>& stations, const std::vector<Boat>& bo
 TEST(Radars, TwoAreBetterThanTheBetterAloneAndShowEachVesselOnce) {
   const Station fine{0, kFine}, coarse{1, kCoarse, {.north_m = 2000.0}};
   Score alone, other, both;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const std::vector<Boat> boats = fleet(12, seed);
     alone.add(score_of({fine}, boats, seed));
     other.add(score_of({coarse}, boats, seed));

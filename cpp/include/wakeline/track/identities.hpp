@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "wakeline/core/archive.hpp"
+#include "wakeline/core/status.hpp"
 #include "wakeline/core/types.hpp"
 #include "wakeline/core/utf8.hpp"
 #include "wakeline/track/track.hpp"
