@@ -103,8 +103,7 @@ std::span<const std::byte> made_up(int sweep, Cat240Writer& writer, std::span<st
   constexpr double width_rad = 2 * kPi<double> / 720, cell_m = 10.0;
   const double time_s = sweep * kRadar.period_s / 720, azimuth_rad = sweep % 720 * width_rad;
   std::vector<std::uint8_t> cells(256);
-  for (std::size_t k = 0; k < cells.size(); ++k)
-    cells[k] = std::uint8_t(8 + (7 * k + std::size_t(sweep)) % 9);
+  for (int k = 0; k < 256; ++k) cells[std::size_t(k)] = std::uint8_t(8 + (7 * k + sweep) % 9);
   for (const Vec<double, 2>& p : {Vec<double, 2>(1500 - 6 * time_s, 500 + 4 * time_s),
                                   Vec<double, 2>(-900 + 3 * time_s, 1200 + 7 * time_s)})
     if (std::abs(wrap_angle(std::atan2(p[1], p[0]) - azimuth_rad)) < 1.5 * width_rad)
