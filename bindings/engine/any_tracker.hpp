@@ -43,46 +43,38 @@ class VesselSteps {
 
 using VesselTracker = Tracker<VesselImm, VesselSteps>;
 
+using LockedTracker = LockedVariant<VesselTracker, Tracker<AnyEstimator>, LateWindow<VesselTracker>,
+                                    LateWindow<Tracker<AnyEstimator>>>;
+
 /// A tracker with any estimator.
-class AnyTracker {
+class AnyTracker : public LockedTracker {
  public:
   /// Behind a window for late data where one is given.
   AnyTracker(std::span<const Radar> radars, const TrackerConfig& config,
              const AnyEstimator& estimator, const LateWindowConfig* window)
-      : tracker_(make<Tracker<AnyEstimator>>(window, radars, config, estimator)) {}
+      : LockedTracker(make<Tracker<AnyEstimator>>(window, radars, config, estimator)) {}
   AnyTracker(std::span<const Radar> radars, const TrackerConfig& config, const VesselImm& imm,
              const LateWindowConfig* window)
-      : tracker_(make<VesselTracker>(window, radars, config, imm)) {}
+      : LockedTracker(make<VesselTracker>(window, radars, config, imm)) {}
 
-  /// Calls a function with the tracker or its window.
-  template <class Function>
-  auto visit(const Function& function) {
-    const auto hold = lock();
-    return std::visit(function, tracker_);
-  }
-  /// Calls a function with the tracker.
+  using LockedTracker::visit;
+  /// Calls a function with the tracker, also of a window.
   template <class Function>
   auto visit(const Function& function) const {
-    const auto hold = lock();
-    return std::visit([&](const auto& one) { return function(tracker_of(one)); }, tracker_);
+    return LockedTracker::visit([&](const auto& one) { return function(tracker_of(one)); });
   }
   /// Calls a function with the window, which there must be.
   template <class Function>
   auto visit_window(const Function& function) {
     const auto hold = lock();
-    const auto usual = std::get_if<LateWindow<VesselTracker>>(&tracker_);
+    const auto usual = std::get_if<LateWindow<VesselTracker>>(&object_);
     return usual != nullptr ? function(*usual)
-                            : function(std::get<LateWindow<Tracker<AnyEstimator>>>(tracker_));
+                            : function(std::get<LateWindow<Tracker<AnyEstimator>>>(object_));
   }
 
-  [[nodiscard]] bool has_window() const noexcept { return tracker_.index() > 1; }
-
-  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
+  [[nodiscard]] bool has_window() const noexcept { return object_.index() > 1; }
 
  private:
-  using Variant = std::variant<VesselTracker, Tracker<AnyEstimator>, LateWindow<VesselTracker>,
-                               LateWindow<Tracker<AnyEstimator>>>;
-
   template <class One, class... Arguments>
   static Variant make(const LateWindowConfig* window, const Arguments&... arguments) {
     if (window == nullptr) return One(arguments...);
@@ -97,9 +89,6 @@ class AnyTracker {
   static const One& tracker_of(const LateWindow<One>& window) {
     return window.tracker();
   }
-
-  Variant tracker_;
-  ThreadLock lock_;
 };
 
 struct PyReport {

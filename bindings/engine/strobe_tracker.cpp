@@ -21,43 +21,27 @@ void define_strobe_tracker(py::module_& track);
 
 namespace {
 
+using LockedStrobeTracker = LockedVariant<StrobeTracker<AnyEstimator, std::uint8_t>,
+                                          StrobeTracker<AnyEstimator, std::uint16_t>>;
+
 /// A strobe tracker with any estimator, on video of 8 or 16 bits.
-class AnyStrobeTracker {
+class AnyStrobeTracker : public LockedStrobeTracker {
  public:
   AnyStrobeTracker(const Radar& radar, const StrobeTrackerConfig& config,
                    const AnyEstimator& estimator, const LandMask& land, int bits)
-      : tracker_(bits == 8 ? Variant(StrobeTracker<AnyEstimator, std::uint8_t>(radar, config,
-                                                                               estimator, land))
-                           : Variant(StrobeTracker<AnyEstimator, std::uint16_t>(
-                                 radar, config, estimator, land))) {}
-
-  template <class Function>
-  auto visit(const Function& function) {
-    const auto hold = lock();
-    return std::visit(function, tracker_);
-  }
-  template <class Function>
-  auto visit(const Function& function) const {
-    const auto hold = lock();
-    return std::visit(function, tracker_);
-  }
-
-  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
+      : LockedStrobeTracker(bits == 8 ? Variant(StrobeTracker<AnyEstimator, std::uint8_t>(
+                                            radar, config, estimator, land))
+                                      : Variant(StrobeTracker<AnyEstimator, std::uint16_t>(
+                                            radar, config, estimator, land))) {}
 
   template <class Amplitude>
   StrobeTracker<AnyEstimator, Amplitude>& of_amplitude() {
-    if (auto* tracker = std::get_if<StrobeTracker<AnyEstimator, Amplitude>>(&tracker_))
+    if (auto* tracker = std::get_if<StrobeTracker<AnyEstimator, Amplitude>>(&object_))
       return *tracker;
     throw py::value_error(sizeof(Amplitude) == 1
                               ? "amplitude must be of uint16 as the tracker, got uint8"
                               : "amplitude must be of uint8 as the tracker, got uint16 (see bits)");
   }
-
- private:
-  using Variant = std::variant<StrobeTracker<AnyEstimator, std::uint8_t>,
-                               StrobeTracker<AnyEstimator, std::uint16_t>>;
-  Variant tracker_;
-  ThreadLock lock_;
 };
 
 /// What was found in strobes, as arrays.

@@ -212,6 +212,19 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
                   [&] { return tracker.visit([&](auto& one) { return one.sector(part); }); });
 }
 
+/// A velocity of which both components are given, or none.
+std::optional<Vec<double, 2>> velocity_of(const std::optional<double>& vnorth_mps,
+                                          const std::optional<double>& veast_mps,
+                                          double velocity_std_mps) {
+  if (vnorth_mps.has_value() != veast_mps.has_value())
+    throw py::value_error("vnorth_mps and veast_mps must be given together");
+  if (!vnorth_mps) return std::nullopt;
+  require_in_range("vnorth_mps", *vnorth_mps);
+  require_in_range("veast_mps", *veast_mps);
+  require_positive("velocity_std_mps", velocity_std_mps);
+  return Vec<double, 2>(*vnorth_mps, *veast_mps);
+}
+
 PyReportResult take_report(AnyTracker& tracker, double time_s, std::string_view identity,
                            double north_m, double east_m, double position_std_m,
                            const std::optional<double>& vnorth_mps,
@@ -228,18 +241,13 @@ PyReportResult take_report(AnyTracker& tracker, double time_s, std::string_view 
   require_in_range("north_m", north_m);
   require_in_range("east_m", east_m);
   require_positive("position_std_m", position_std_m);
-  if (vnorth_mps.has_value() != veast_mps.has_value())
-    throw py::value_error("vnorth_mps and veast_mps must be given together");
   PositionReport one{.source = source,
                      .identity = identity,
                      .time_s = time_s,
                      .position_m = {north_m, east_m},
                      .position_std_m = position_std_m};
-  if (vnorth_mps) {
-    require_in_range("vnorth_mps", *vnorth_mps);
-    require_in_range("veast_mps", *veast_mps);
-    require_positive("velocity_std_mps", velocity_std_mps);
-    one.velocity_mps = {*vnorth_mps, *veast_mps};
+  if (const auto velocity_mps = velocity_of(vnorth_mps, veast_mps, velocity_std_mps)) {
+    one.velocity_mps = *velocity_mps;
     one.velocity_std_mps = velocity_std_mps;
   }
   const auto hold = tracker.lock();  // the events are the tracker's memory
@@ -738,15 +746,10 @@ ValueError
             require_in_range("east_m", east_m);
             require_positive("position_std_m", position_std_m);
             require_in_range("position_std_m", position_std_m);
-            if (vnorth_mps.has_value() != veast_mps.has_value())
-              throw py::value_error("vnorth_mps and veast_mps must be given together");
             std::optional<Gaussian<2>> velocity;
-            if (vnorth_mps) {
-              require_in_range("vnorth_mps", *vnorth_mps);
-              require_in_range("veast_mps", *veast_mps);
-              require_positive("velocity_std_mps", velocity_std_mps);
+            if (const auto mean_mps = velocity_of(vnorth_mps, veast_mps, velocity_std_mps)) {
               require_in_range("velocity_std_mps", velocity_std_mps);
-              velocity = {{*vnorth_mps, *veast_mps},
+              velocity = {*mean_mps,
                           velocity_std_mps * velocity_std_mps * Mat<double, 2, 2>::Identity()};
             }
             return tracker.visit([&](auto& one) {

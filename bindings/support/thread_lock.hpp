@@ -7,6 +7,8 @@
 #include <pybind11/pybind11.h>
 
 #include <mutex>
+#include <utility>
+#include <variant>
 
 namespace wakeline::python {
 
@@ -35,6 +37,35 @@ class ThreadLock {
 
  private:
   mutable std::recursive_mutex mutex_;
+};
+
+/// One of several objects, chosen at run time, whose calls are serialised.
+template <class... Objects>
+class LockedVariant {
+ public:
+  using Variant = std::variant<Objects...>;
+
+  explicit LockedVariant(Variant&& object) : object_(std::move(object)) {}
+
+  /// Calls a function with the object.
+  template <class Function>
+  auto visit(const Function& function) {
+    const auto hold = lock();
+    return std::visit(function, object_);
+  }
+  template <class Function>
+  auto visit(const Function& function) const {
+    const auto hold = lock();
+    return std::visit(function, object_);
+  }
+
+  [[nodiscard]] ThreadLock::Hold lock() const { return lock_.hold(); }
+
+ protected:
+  Variant object_;
+
+ private:
+  ThreadLock lock_;
 };
 
 }  // namespace wakeline::python

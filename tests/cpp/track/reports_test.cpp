@@ -22,7 +22,7 @@ const Radar kRadar{.range_std_m = 10.0,
                    .period_s = kPeriod_s,
                    .max_speed_mps = 20.0};
 
-/// A vessel that reports by AIS, rightly unless told otherwise.
+/// A vessel that reports by AIS, rightly unless `tamper` changes it.
 struct Vessel {
   Boat boat;
   std::string identity = {};  ///< empty: it does not report

@@ -75,8 +75,8 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
 }
 
 /// The belief of a track as it is reported: with the errors that stay from scan to scan, and an
-/// alteration of course of `kUnseenTurn_rad` that does not show yet. The estimator goes on without
-/// both.
+/// alteration of course of `kUnseenTurn_rad` that does not show yet. The estimator does
+/// without both.
 inline Gaussian<4> reported(Gaussian<4> kinematics, const Mat<double, 2, 2>& stays_m2) noexcept {
   constexpr double kUnseenTurn_rad = 0.055;
   const Vec<double, 2> aside_mps =

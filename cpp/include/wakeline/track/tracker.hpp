@@ -116,7 +116,7 @@ class Tracker {
   /// `std::invalid_argument` on a setting that makes no sense, and when there are `kMostRadars`.
   int add_radar(const Radar& radar);
 
-  /// Removes a radar and what was learned of it; tracks go on by the others. False when there is
+  /// Removes a radar and what was learned of it; tracks continue by the others. False when there is
   /// none of that number or it is the last one.
   bool remove_radar(int number) noexcept {
     if (!has_radar(number) || radars_in_use() == 1) return false;
@@ -199,10 +199,8 @@ class Tracker {
   [[nodiscard]] const Track* find(std::string_view source,
                                   std::string_view identity) const noexcept {
     const int number = identities_.find(source, identity);
-    if (number < 0) return nullptr;
-    for (const int slot : tracks_.slots())
-      if (tracks_.at(slot).identity == number) return &tracks_.at(slot);
-    return nullptr;
+    const int slot = number < 0 ? -1 : slot_of_identity(number);
+    return slot < 0 ? nullptr : &tracks_.at(slot);
   }
 
   /// Calls `f(track)` for every track, tentative and hushed ones too, older ones first. Each has
@@ -364,6 +362,14 @@ class Tracker {
     std::array<double, kMostPartialSensors> times{};
     times.fill(-std::numeric_limits<double>::infinity());
     return times;
+  }
+
+  /// `kNotFinite` of a time too long after the last scan, `kNegativeTimeStep` of one too long
+  /// before.
+  [[nodiscard]] Status status_of_time(double time_s) const noexcept {
+    if (started_ && time_s > time_s_ + kOldestReport_s) return Status::kNotFinite;
+    if (started_ && time_s < time_s_ - kOldestReport_s) return Status::kNegativeTimeStep;
+    return Status::kOk;
   }
 
   ScanReport rejected(Status status) noexcept {
@@ -709,13 +715,18 @@ class Tracker {
   /// maneuver: m² per axis over the cube of the time. 0 where all plots are of the track's period.
   [[nodiscard]] double maneuver_m2s3(const Track& track, double dt_s) noexcept {
     if (!(dt_s > state().radar.period_s)) return 0.0;
+    const Mat<double, 4, 4> added = maneuver_covariance(track, dt_s);
+    return std::max(0.0, (added(0, 0) + added(2, 2)) / 2) / (dt_s * dt_s * dt_s);
+  }
+
+  /// What maneuvers add to the covariance of a track over a time, by its models; zero where it
+  /// cannot be predicted.
+  [[nodiscard]] Mat<double, 4, 4> maneuver_covariance(const Track& track, double dt_s) noexcept {
     Estimator ahead = estimator_of(track);
     PredictionStep<Estimator> step{&ahead, dt_s};
     steps_.predict({&step, 1});
-    if (step.status != Status::kOk) return 0.0;
-    const Mat<double, 4, 4> covariance =
-        step.kinematics.covariance - at_constant_velocity(track.kinematics, dt_s).covariance;
-    return std::max(0.0, (covariance(0, 0) + covariance(2, 2)) / 2) / (dt_s * dt_s * dt_s);
+    if (step.status != Status::kOk) return Mat<double, 4, 4>::Zero();
+    return step.kinematics.covariance - at_constant_velocity(track.kinematics, dt_s).covariance;
   }
 
   /// Assigns plots to tracks, where each may have one at most.
@@ -922,24 +933,31 @@ class Tracker {
     if (track.id <= 0) track.id = next_id_++;
   }
 
+  /// Moves what was measured so long ago along with a track.
+  [[nodiscard]] TimeAlignment alignment_over(const Track& track, double late_s) noexcept {
+    const double period_s = longest_period_s();
+    return {track, period_s, late_s > period_s ? maneuver_m2s3(track, late_s) : 0.0};
+  }
+
+  /// Of the position of a report, per axis, with the extent of the vessel.
+  [[nodiscard]] double variance_m2(const PositionReport& report) const noexcept {
+    const double extent_m = state().radar.extent_std_m;
+    return report.position_std_m * report.position_std_m + extent_m * extent_m;
+  }
+
   /// The position of a report so long after it, as a track moves.
   [[nodiscard]] Gaussian<2> reported_position(const PositionReport& report, const Track& track,
                                               double late_s) noexcept {
-    const double period_s = longest_period_s();
-    const TimeAlignment alignment(track, period_s,
-                                  late_s > period_s ? maneuver_m2s3(track, late_s) : 0.0);
-    const double extent_m = state().radar.extent_std_m;
-    const double variance_m2 = report.position_std_m * report.position_std_m + extent_m * extent_m;
     return {report.position_m + late_s * track.velocity(),
-            variance_m2 * Mat<double, 2, 2>::Identity() + alignment.added_m2(late_s)};
+            variance_m2(report) * Mat<double, 2, 2>::Identity() +
+                alignment_over(track, late_s).added_m2(late_s)};
   }
 
   /// The same of position and velocity, moved by the velocity that it reports. What the target may
   /// have maneuvered since makes it less certain, by the models of the track.
   [[nodiscard]] Gaussian<4> reported_kinematics(const PositionReport& report, const Track& track,
                                                 double late_s) noexcept {
-    const double extent_m = state().radar.extent_std_m;
-    const double position_m2 = report.position_std_m * report.position_std_m + extent_m * extent_m;
+    const double position_m2 = variance_m2(report);
     const double velocity_m2s2 = report.velocity_std_mps * report.velocity_std_mps;
     Gaussian<4> then;
     then.mean << report.position_m[0], report.velocity_mps[0], report.position_m[1],
@@ -948,12 +966,7 @@ class Tracker {
         Vec<double, 4>(position_m2, velocity_m2s2, position_m2, velocity_m2s2).asDiagonal();
     if (!(late_s > 0.0)) return then;
     Gaussian<4> now = at_constant_velocity(then, late_s);
-    Estimator ahead = estimator_of(track);
-    PredictionStep<Estimator> step{&ahead, late_s};
-    steps_.predict({&step, 1});
-    if (step.status != Status::kOk) return now;
-    const Mat<double, 4, 4> added =
-        step.kinematics.covariance - at_constant_velocity(track.kinematics, late_s).covariance;
+    const Mat<double, 4, 4> added = maneuver_covariance(track, late_s);
     const double added_m2 = std::max((added(0, 0) + added(2, 2)) / 2, 0.0);
     const double added_m2s2 = std::max((added(1, 1) + added(3, 3)) / 2, 0.0);
     const double most = 0.99 * std::sqrt(added_m2 * added_m2s2);
@@ -1020,12 +1033,18 @@ class Tracker {
     track.kinematics = step.kinematics;
   }
 
+  /// The slot of the track that has an identity; -1 where none has.
+  [[nodiscard]] int slot_of_identity(int number) const noexcept {
+    for (const int slot : tracks_.slots())
+      if (tracks_.at(slot).identity == number) return slot;
+    return -1;
+  }
+
   /// Gives the identity to the track that it is believed to be; null when there is none.
   Track* identify(int number) noexcept {
     Identity& identity = identities_[number];
-    Track* before = nullptr;
-    for (const int slot : tracks_.slots())
-      if (tracks_.at(slot).identity == number) before = &tracks_.at(slot);
+    const int slot = slot_of_identity(number);
+    Track* before = slot < 0 ? nullptr : &tracks_.at(slot);
     const Identity::Candidate* best = identity.likeliest();
     Track* now =
         best != nullptr && identity.probability(*best) > 0.5 ? &tracks_.at(best->slot) : nullptr;
@@ -1050,28 +1069,26 @@ class Tracker {
     predict_to(track, report.time_s);
     Estimator& estimator = estimator_at(track.slot);
     const double late_s = track.time_s - report.time_s;
-    double share = 0.0;
-    bool taken = false;
-    if constexpr (requires(Alternative<KinematicFix> reading) {
-                    estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1), 1.0,
-                                     std::span(&share, 1));
-                  }) {
+    const auto update = [&]<class Sensor>(const Alternative<Sensor>& reading) {
+      double share = 0.0;
+      (void)estimator.update(std::span(&reading, 1), 1.0 - probability, std::span(&share, 1));
+    };
+    const auto update_position = [&] {
+      const Gaussian<2> now = reported_position(report, track, late_s);
+      update(Alternative<Fix>{Fix{now.covariance}, now.mean, probability / kOtherVessels_per_m2});
+    };
+    if constexpr (requires(std::span<const Alternative<KinematicFix>> reading,
+                           std::span<double> share) { estimator.update(reading, 1.0, share); }) {
       if (report.has_velocity()) {
         const Gaussian<4> now = reported_kinematics(report, track, late_s);
-        const Alternative<KinematicFix> reading{
+        update(Alternative<KinematicFix>{
             KinematicFix{now.covariance}, now.mean,
-            probability / (kOtherVessels_per_m2 * kOtherVelocities_per_m2s2)};
-        (void)estimator.update(std::span<const Alternative<KinematicFix>>(&reading, 1),
-                               1.0 - probability, std::span(&share, 1));
-        taken = true;
+            probability / (kOtherVessels_per_m2 * kOtherVelocities_per_m2s2)});
+      } else {
+        update_position();
       }
-    }
-    if (!taken) {
-      const Gaussian<2> now = reported_position(report, track, late_s);
-      const Alternative<Fix> reading{Fix{now.covariance}, now.mean,
-                                     probability / kOtherVessels_per_m2};
-      (void)estimator.update(std::span<const Alternative<Fix>>(&reading, 1), 1.0 - probability,
-                             std::span(&share, 1));
+    } else {
+      update_position();
     }
     track.kinematics = kinematics_of(estimator.estimate());
     note_report(identity, probability, track);
@@ -1082,12 +1099,8 @@ class Tracker {
     track.existence = 1.0 - (1.0 - track.existence) * (1.0 - probability);
     track.count(true);
     track.seen_until_s = std::max(track.seen_until_s, identity.time_s + identity.patience_s());
-    if (!track.confirmed()) {
-      track.status = TrackStatus::kConfirmed;
-      number_confirmed();
-    } else {
-      track.status = TrackStatus::kConfirmed;
-    }
+    track.status = TrackStatus::kConfirmed;
+    if (track.id <= 0) number_confirmed();
   }
 
   /// Starts a track of a vessel that reports where no radar has seen it.
@@ -1228,6 +1241,7 @@ class Tracker {
   std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
   std::vector<int> competing_;  ///< both
   std::array<double, kMostPartialSensors> partial_s_ = never();  ///< when each gave values last
+  std::vector<PartOfPosition> parts_;     ///< what such a sensor sees of the tracks at hand
   std::vector<double> value_likelihood_;  ///< by value of a partial scan, of all tracks
   std::vector<double> value_best_;        ///< and of the likeliest
   std::vector<double> evidence_;          ///< by place in the list of tracks, of a report
@@ -1274,6 +1288,7 @@ Tracker<Estimator, Steps>::Tracker(std::span<const Radar> radars, const TrackerC
   touched_.resize(estimators_.size());
   arcs_.reserve(estimators_.size());
   evidence_.reserve(estimators_.size());
+  parts_.reserve(estimators_.size());
   value_likelihood_.reserve(plots);
   value_best_.reserve(plots);
   is_candidate_.reserve(plots);
@@ -1395,16 +1410,14 @@ template <class Estimator, class Steps>
 ReportResult Tracker<Estimator, Steps>::report(const PositionReport& report) noexcept {
   events_.clear();
   plot_track_id_.clear();
-  if (!report.is_valid() || (started_ && report.time_s > time_s_ + kOldestReport_s))
-    return {Status::kNotFinite, 0, {}};
-  if (started_ && report.time_s < time_s_ - kOldestReport_s)
-    return {Status::kNegativeTimeStep, 0, {}};
+  if (!report.is_valid()) return {Status::kNotFinite, 0, {}};
+  if (const Status status = status_of_time(report.time_s); status != Status::kOk)
+    return {status, 0, {}};
   const int number = identities_.find_or_add(report.source, report.identity);
   Identity& identity = identities_[number];
   if (!(report.time_s > identity.time_s)) return {Status::kNegativeTimeStep, 0, {}};
   if (!identity.reported())
-    for (const int slot : tracks_.slots())
-      if (tracks_.at(slot).identity == number) tracks_.at(slot).identity = -1;
+    if (const int slot = slot_of_identity(number); slot >= 0) tracks_.at(slot).identity = -1;
 
   const bool jumped_before = identity.jumps;
   identity.note(report, state().radar.max_speed_mps);
@@ -1432,10 +1445,9 @@ ReportResult Tracker<Estimator, Steps>::report(const PositionReport& report) noe
 template <class Estimator, class Steps>
 ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& given) noexcept {
   PartialScan scan = given;
-  if (!scan.is_valid() || (started_ && scan.time_s > time_s_ + kOldestReport_s))
-    return rejected(Status::kNotFinite);
-  if (started_ && scan.time_s < time_s_ - kOldestReport_s)
-    return rejected(Status::kNegativeTimeStep);
+  if (!scan.is_valid()) return rejected(Status::kNotFinite);
+  if (const Status status = status_of_time(scan.time_s); status != Status::kOk)
+    return rejected(status);
   double& before_s = partial_s_[static_cast<std::size_t>(scan.sensor)];
   const double periods = std::abs(scan.time_s - before_s) / longest_period_s();
   scan.std /= std::sqrt(std::clamp(periods, kLeastPartialPeriods, 1.0));
@@ -1445,17 +1457,16 @@ ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& given) noexcept
       scan.values.first(std::min(scan.values.size(), static_cast<std::size_t>(config_.max_plots)));
   plot_track_id_.assign(values.size(), 0);
   const double extent_m = state().radar.extent_std_m;
-  const auto part_of = [&](const Track& track) {
-    return PartOfPosition(scan, position_in(belief_at(track, scan.time_s)), extent_m);
-  };
   // How likely each value is by all tracks, and by the one by which it is likeliest.
   value_likelihood_.assign(values.size(), 0.0);
   value_best_.assign(values.size(), 0.0);
   due_.clear();
+  parts_.clear();
   for (const int slot : tracks_.slots()) {
     const Track& track = tracks_.at(slot);
     if (!track.active()) continue;
-    const PartOfPosition part = part_of(track);
+    const PartOfPosition& part =
+        parts_.emplace_back(scan, position_in(belief_at(track, scan.time_s)), extent_m);
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (!(part.squared_distance(values[k]) <= kPartialGate)) continue;
       const double likelihood = part.likelihood(values[k]);
@@ -1470,9 +1481,10 @@ ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& given) noexcept
   const auto others_than = [&](const PartOfPosition& part, std::size_t k) {
     return std::max(value_likelihood_[k] - part.likelihood(values[k]), 0.0) + scan.false_per_unit;
   };
-  for (const int slot : due_) {
+  for (std::size_t place = 0; place < due_.size(); ++place) {
+    const int slot = due_[place];
     Track& track = tracks_.at(slot);
-    const PartOfPosition part = part_of(track);
+    const PartOfPosition& part = parts_[place];
     double ratio = 0.0;  // of the values to being false or another target's
     for (std::size_t k = 0; k < values.size(); ++k)
       if (part.squared_distance(values[k]) <= kPartialGate)
@@ -1484,8 +1496,7 @@ ScanReport Tracker<Estimator, Steps>::partial(const PartialScan& given) noexcept
     if (ratio == 0.0) continue;
     predict_to(track, scan.time_s);
     const double late_s = track.time_s - scan.time_s;
-    const TimeAlignment alignment(track, longest_period_s(),
-                                  late_s > longest_period_s() ? maneuver_m2s3(track, late_s) : 0.0);
+    const TimeAlignment alignment = alignment_over(track, late_s);
     std::array<Alternative<Fix>, kMaxAlternatives> readings;
     std::array<double, kMaxAlternatives> share;
     std::size_t count = 0;
