@@ -18,7 +18,7 @@ class TimeAlignment {
  public:
   TimeAlignment(const Track& track, double period_s, double maneuver_m2s3) noexcept
       : time_s_(track.time_s),
-        position_{track.position(), track.position_covariance()},
+        position_(position_in(track.kinematics)),
         velocity_(track.velocity()),
         velocity_covariance_(track.velocity_covariance()),
         period_s_(period_s),

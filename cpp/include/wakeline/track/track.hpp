@@ -196,10 +196,6 @@ struct Track {
   [[nodiscard]] Vec<double, 2> velocity() const noexcept {
     return {kinematics.mean[1], kinematics.mean[3]};
   }
-  [[nodiscard]] Mat<double, 2, 2> position_covariance() const noexcept {
-    const auto rows = Eigen::seqN(0, Eigen::fix<2>, Eigen::fix<2>);
-    return kinematics.covariance(rows, rows);
-  }
   [[nodiscard]] Mat<double, 2, 2> velocity_covariance() const noexcept {
     return wakeline::velocity_covariance(kinematics);
   }

@@ -827,7 +827,7 @@ class Tracker {
     if (is_sure(track) && probabilities.of_candidate[at] > kCertain) errors.learn(track.nis);
     const ConvertedErrors& of_plot = state().plots[best.plot].errors;
     const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
-    const Mat<double, 2, 2> position_m2 = track.position_covariance();
+    const Mat<double, 2, 2> position_m2 = position_in(track.kinematics).covariance;
     track.stays_m2 = errors.share() * (best.nominal_r + position_m2) +
                      bent_m2(track.position() - antenna_m, position_m2);
   }
