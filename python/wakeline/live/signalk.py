@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import math
 import re
@@ -145,6 +144,8 @@ def receive(
     ModuleNotFoundError
         When aiohttp is not installed.
     """
+    import asyncio
+
     try:
         import aiohttp
     except ModuleNotFoundError:
