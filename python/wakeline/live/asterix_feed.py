@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from wakeline._engine import wire
+from wakeline import wire
 
 from .problems import Problems
 from .radar_feed import PlotRow, Sector, SensorClock

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from wakeline._engine import wire
+from wakeline import wire
 
 from .config import OutputConfig
 from .engine import LiveTrack
