@@ -55,13 +55,24 @@ now_s = _Clock()
 
 
 class _Thread:
-    """A thread that ends when it is closed."""
+    """The thread of an input or output, which ends when it is closed; listens at `tcp-listen`."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, config: InputConfig | OutputConfig) -> None:
+        self.config = config
         self.connection = "starting"
         self.restarts = 0
+        self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
         self._ends = threading.Event()
-        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread = threading.Thread(target=self._run, name=config.name, daemon=True)
+        self.port = self._url.port if self._url.netloc else None
+        self._datagrams: socket.socket | None = None
+        self._listener: socket.socket | None = None
+        with _naming(config.url):
+            if config.scheme == "udp":
+                self._datagrams = self._udp_socket()
+            elif config.scheme == "tcp-listen":
+                self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
+                self.port = self._listener.getsockname()[1]
 
     def start(self) -> None:
         self._thread.start()
@@ -96,6 +107,20 @@ class _Thread:
             self._ends.wait(pause_s)
             pause_s = min(2.0 * pause_s, _BACK_OFF_S[1])
 
+    @contextlib.contextmanager
+    def _connected(self) -> Iterator[socket.socket]:
+        """A connection with the address of the URL."""
+        address = self._url.hostname or "127.0.0.1", self._url.port
+        self.connection = f"connecting to {address[0]} port {address[1]}"
+        with socket.create_connection(address, 5.0) as one:
+            _probe(one)
+            self.connection = "connected"
+            yield one
+
+    def _udp_socket(self) -> socket.socket:
+        """The socket of datagrams."""
+        raise NotImplementedError
+
     def _work(self) -> bool:
         """Work until an error; True if all is done."""
         raise NotImplementedError
@@ -114,18 +139,10 @@ class NetworkInput(_Thread):
     """
 
     def __init__(self, config: InputConfig, take: Take) -> None:
-        super().__init__(config.name)
-        self.config, self._take = config, take
-        self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
-        self.port = self._url.port if self._url.netloc else None
-        self._listener: socket.socket | None = None
-        with _naming(config.url):
-            if config.scheme == "udp":
-                self._listener = self._udp_socket()
-            elif config.scheme == "tcp-listen":
-                self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
-        if self._listener is not None:
-            self.port = self._listener.getsockname()[1]
+        super().__init__(config)
+        self._take = take
+        if self._datagrams is not None:
+            self.port = self._datagrams.getsockname()[1]
 
     def _work(self) -> bool:
         return {
@@ -161,7 +178,7 @@ class NetworkInput(_Thread):
         return one
 
     def _udp(self) -> bool:
-        one = self._listener
+        one = self._datagrams
         one.settimeout(_WAIT_S)
         self.connection = f"listening on port {self.port}"
         while not self._ends.is_set():
@@ -184,11 +201,7 @@ class NetworkInput(_Thread):
     # ------------------------------------------------------------------ streams
 
     def _tcp(self) -> bool:
-        address = self._url.hostname or "127.0.0.1", self._url.port
-        self.connection = f"connecting to {address[0]} port {address[1]}"
-        with socket.create_connection(address, 5.0) as one:
-            _probe(one)
-            self.connection = "connected"
+        with self._connected() as one:
             return self._stream(one, self.config.name)
 
     def _stream(self, one: socket.socket, name: str) -> bool:
@@ -319,27 +332,16 @@ class NetworkOutput(_Thread):
     """
 
     def __init__(self, config: OutputConfig) -> None:
-        super().__init__(config.name)
-        self.config = config
-        self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
+        super().__init__(config)
         self._waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._queued = 0
         self.dropped = 0
-        self.port = self._url.port if self._url.netloc else None
-        self._udp: socket.socket | None = None
-        self._listener: socket.socket | None = None
-        with _naming(config.url):
-            if config.scheme == "udp":
-                self._udp = self._udp_socket()
-            elif config.scheme == "tcp-listen":
-                self._listener = _listening(self._url.hostname or "127.0.0.1", self._url.port)
-                self.port = self._listener.getsockname()[1]
 
     def send(self, octets: bytes) -> None:
         """Send a message; it never waits."""
-        if self._udp is not None:
+        if self._datagrams is not None:
             try:
-                self._udp.send(octets)
+                self._datagrams.send(octets)
                 self.connection = "sending"
             except OSError as error:
                 self.dropped += 1
@@ -353,11 +355,11 @@ class NetworkOutput(_Thread):
         self._waiting.put(octets)
 
     def start(self) -> None:
-        if self._udp is None:
+        if self._datagrams is None:
             super().start()
 
     def join(self) -> None:
-        if self._udp is None:
+        if self._datagrams is None:
             super().join()
 
     def _udp_socket(self) -> socket.socket:
@@ -374,11 +376,7 @@ class NetworkOutput(_Thread):
 
     def _work(self) -> bool:
         if self.config.scheme == "tcp":
-            address = self._url.hostname or "127.0.0.1", self._url.port
-            self.connection = f"connecting to {address[0]} port {address[1]}"
-            with socket.create_connection(address, 5.0) as one:
-                _probe(one)
-                self.connection = "connected"
+            with self._connected() as one:
                 one.settimeout(10.0)
                 return self._each(one.sendall)
         if self.config.scheme == "tcp-listen":
