@@ -134,11 +134,7 @@ def latency(seconds: float) -> Iterator[Figure]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
         receiver.bind(("127.0.0.1", 0))
         receiver.settimeout(0.2)
-        config = LiveConfig(
-            inputs=(InputConfig("udp://127.0.0.1:0?name=video", format="cat240"),),
-            outputs=(OutputConfig(f"udp://127.0.0.1:{receiver.getsockname()[1]}", format="json"),),
-            radars=(RadarConfig("A", position_deg=_PLACE_DEG, settings=_RADAR),),
-        )
+        config = _one_radar(receiver, "cat240")
         late_s: list[float] = []
         ends = threading.Event()
         thread = threading.Thread(target=_receive, args=(receiver, late_s, ends))
@@ -151,13 +147,27 @@ def latency(seconds: float) -> Iterator[Figure]:
     yield _figure("last sweep to track, 99.9 %", float(np.quantile(late_ms, 0.999)), "ms", 150.0)
 
 
-def _receive(receiver: socket.socket, late_s: list[float], ends: threading.Event) -> None:
-    width_s = 0.5 * _WIDTH_SWEEPS * PERIOD_S / SWEEPS
+def _one_radar(receiver: socket.socket, radar_format: str) -> LiveConfig:
+    """One radar at an input, and JSON lines to a receiver."""
+    return LiveConfig(
+        inputs=(InputConfig("udp://127.0.0.1:0?name=radar", format=radar_format),),
+        outputs=(OutputConfig(f"udp://127.0.0.1:{receiver.getsockname()[1]}", format="json"),),
+        radars=(RadarConfig("A", position_deg=_PLACE_DEG, settings=_RADAR),),
+    )
+
+
+def _lines(receiver: socket.socket, ends: threading.Event) -> Iterator[dict[str, Any]]:
+    """The JSON lines that arrive until the event is set."""
     while not ends.is_set():
         try:
-            line = json.loads(receiver.recv(1 << 16))
+            yield json.loads(receiver.recv(1 << 16))
         except TimeoutError:
             continue
+
+
+def _receive(receiver: socket.socket, late_s: list[float], ends: threading.Event) -> None:
+    width_s = 0.5 * _WIDTH_SWEEPS * PERIOD_S / SWEEPS
+    for line in _lines(receiver, ends):
         if line["type"] == "track" and line["misses"] == 0:
             late_s.append(time.time() - line["time_s"] - width_s)
 
@@ -167,13 +177,7 @@ def sector_latency(turns: int = 16, targets: int = 20) -> Iterator[Figure]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
         receiver.bind(("127.0.0.1", 0))
         receiver.settimeout(0.2)
-        config = LiveConfig(
-            inputs=(InputConfig("udp://127.0.0.1:0?name=plots", format="cat048"),),
-            outputs=(OutputConfig(f"udp://127.0.0.1:{receiver.getsockname()[1]}", format="json"),),
-            radars=(RadarConfig("A", position_deg=_PLACE_DEG, settings=_RADAR),),
-        )
-        session = Session(config)
-        service = Service(session)
+        service = Service(Session(_one_radar(receiver, "cat048")))
         thread = threading.Thread(target=service.run)
         thread.start()
         sent: dict[float, float] = {}
@@ -217,11 +221,7 @@ def _block(category: int, record: bytes) -> bytes:
 def _receive_sectors(
     receiver: socket.socket, sent: dict[float, float], late_s: list[float], ends: threading.Event
 ) -> None:
-    while not ends.is_set():
-        try:
-            line = json.loads(receiver.recv(1 << 16))
-        except TimeoutError:
-            continue
+    for line in _lines(receiver, ends):
         began_s = sent.get(round(line.get("time_s", 0.0) % 86400.0 * 128.0))
         if line["type"] == "track" and began_s is not None:
             late_s.append(time.time() - began_s)
