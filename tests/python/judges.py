@@ -1,4 +1,4 @@
-"""Other people's decoders, each in an environment of its own: two of them install a module of the
+"""Other people's decoders, each in a separate environment: two of them install a module of the
 same name."""
 
 import fcntl

@@ -664,7 +664,7 @@ def _called(track_id: int, name: str) -> str:
 
 
 def _utc(time_s: float) -> str:
-    if not 1e8 < time_s < 1e10:  # a recording with times of its own
+    if not 1e8 < time_s < 1e10:  # a recording whose times are not UTC
         return ""
     when = datetime.fromtimestamp(time_s, timezone.utc)
     return when.isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -54,7 +54,7 @@ class Source(Protocol):
         """Times in (after_s, until_s] at which something is new."""
 
     def advance(self, time_s: float) -> list[Any]:
-        """Go on to the next of these times; events of the tracker."""
+        """Continue to the next of these times; events of the tracker."""
 
     def tracks(self) -> Any:
         """Columns of a ``TrackTable`` at that time."""
@@ -239,8 +239,8 @@ class SessionPlayback(Player):
 class Playback(Player):
     """Plays a source as a live session: pictures, alarms and commands, and a time that obeys.
 
-    Setting the time back restores a snapshot from before and goes on from there, so that the tracks
-    are the same as at first; what the operator did after the new time is gone.
+    Setting the time back restores a snapshot from before and continues from there, so that the
+    tracks are the same as at first; what the operator did after the new time is gone.
 
     Parameters
     ----------

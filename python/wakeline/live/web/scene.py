@@ -76,7 +76,7 @@ class _Table:
         return changed, [key for when, key in self._gone if when > version], False
 
     def _differs(self, old: list[Any], new: list[Any]) -> bool:
-        """Whether a page that goes on with the old row shows something else."""
+        """Whether a page that keeps the old row shows something else."""
         dt_s = new[1] - old[1]
         if not 0.0 <= dt_s < _REPEAT_S:
             return True

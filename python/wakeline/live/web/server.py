@@ -1,6 +1,6 @@
 """The web server of a session: the page, its two streams, status, and the Signal K Radar API.
 
-A page gets the picture as JSON and the echoes as octets, each over a WebSocket of its own. Nothing
+A page gets the picture as JSON and the echoes as octets, each over a separate WebSocket. Nothing
 is queued for a client: it is sent what is newest when it has taken the last message, so that one
 that has stopped reading costs one message and nobody else.
 """
@@ -190,7 +190,7 @@ class WebApp:
             picture["radars"] = self._with_range(picture.get("radars", ()))
             self._scene.take(picture)
             self._signal_k.take(picture)
-        except Exception as error:  # noqa: BLE001 - the screen says it; tracking goes on
+        except Exception as error:  # noqa: BLE001 - the screen says it; tracking continues
             note = f"no picture: {type(error).__name__}: {error}"
             self._scene.take({"time_s": self._scene.time_s, "tracks": (), "note": note})
         self._changed.set()
@@ -414,7 +414,7 @@ async def _receive(
 
 
 class WebServer:
-    """Serves a session on a thread of its own: a :class:`WebApp` with an event loop.
+    """Serves a session on a separate thread: a :class:`WebApp` with an event loop.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ export class Store {
     if (track.past.length > MOST_PAST) track.past.shift();
   }
 
-  /** The time of the picture now: it goes on between messages. */
+  /** The time of the picture now: it continues between messages. */
   now(now_ms) {
     const speed = this.replay ? (this.replay.paused ? 0 : this.replay.speed) : 1;
     const ahead_s = ((now_ms - this.received_ms) / 1000) * speed;
