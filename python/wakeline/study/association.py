@@ -24,7 +24,7 @@ from wakeline import metrics, plot
 from wakeline.recording import Recording, Tracks
 from wakeline.scenario.dense import RADAR, SCENES
 
-from .base import Done, Picture, Plan, Request, Rows, Study
+from .base import Done, Picture, Plan, Request, Rows, Study, means_of, radar_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,13 +45,8 @@ _SHOWN = ("clutter_1000", "anchorage", "merged", "crossings")
 
 def track(recording: Recording, estimator: str) -> Tracks:
     """The tracks of a run, with the errors of the radar given."""
-    radar = wl.Radar(
-        range_std_m=RADAR.range_std_m,
-        bearing_std_rad=RADAR.bearing_std_rad,
-        period_s=RADAR.period_s,
-    )
     config = wl.TrackerConfig(**ESTIMATORS[estimator])
-    return wl.track_recording(recording, radar=radar, config=config)
+    return wl.track_recording(recording, radar=radar_of(RADAR), config=config)
 
 
 def record(scene: str, seed: int) -> Recording:
@@ -96,15 +91,11 @@ def _plan(request: Request) -> Plan:
 
 def _rows(done: Done) -> Rows:
     return [
-        {"scenario": scene, "estimator": name, **_means([run[name] for run in runs])}
+        {"scenario": scene, "estimator": name, **means_of([run[name] for run in runs])}
         for scene in SCENES
         if (runs := [run for (of, _), run in done.items() if of == scene])
         for name in ESTIMATORS
     ]
-
-
-def _means(runs: list[dict[str, float | None]]) -> dict[str, float]:
-    return {metric: float(np.mean([run[metric] for run in runs])) for metric in runs[0]}
 
 
 STUDY = Study(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+import wakeline as wl
 from wakeline import plot
 from wakeline._brief import brief, many
 from wakeline._checks import run_numbers
@@ -19,6 +20,8 @@ from wakeline._progress import progress as reported
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from wakeline.scenario import RadarSimulator
 
 Panel = Callable[["Axes"], "Axes"]
 Rows = list[dict[str, Any]]
@@ -381,6 +384,21 @@ def figure_text(metric: str, value: float | None) -> str:
         return "-"
     digits = _DIGITS.get(metric, _DIGITS.get(metric.split("_")[-1], 2))
     return f"{value:.{digits}f}"
+
+
+def means_of(runs: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+    """The mean of every figure over runs."""
+    return {metric: float(np.mean([run[metric] for run in runs])) for metric in runs[0]}
+
+
+def radar_of(simulator: RadarSimulator, **others: Any) -> wl.Radar:
+    """A tracker's radar with the errors and the period of a simulated one."""
+    return wl.Radar(
+        range_std_m=simulator.range_std_m,
+        bearing_std_rad=simulator.bearing_std_rad,
+        period_s=simulator.period_s,
+        **others,
+    )
 
 
 def finite(value: float | None) -> float | None:

@@ -36,7 +36,7 @@ from wakeline.scenario.dense import SCENES
 from wakeline.scenario.radar import polar
 
 from . import solent
-from .base import Done, Picture, Plan, Request, Rows, Study
+from .base import Done, Picture, Plan, Request, Rows, Study, radar_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,6 @@ RECORDINGS = ("joyride", "autoferry")
 PERIOD_S = 2.5
 SETTLED_SCANS = 20
 TURN_DEG_S = 0.05
-AFTER_TURN_S = 30.0
 SURE = (0.85, 0.95)
 
 _EXTENT_STD_M = 5.0
@@ -113,12 +112,7 @@ def tracked(
 ) -> tuple[np.ndarray, Found]:
     """Times (n,) and estimates of the confirmed tracks of a vessel alone."""
     tracker = wl.Tracker(
-        wl.Radar(
-            range_std_m=radar.range_std_m,
-            bearing_std_rad=radar.bearing_std_rad,
-            extent_std_m=extent_std_m,
-            period_s=radar.period_s,
-        ),
+        radar_of(radar, extent_std_m=extent_std_m),
         models=models or wl.VesselModels(),
     )
     rows = []
@@ -161,8 +155,7 @@ def in_turn(truth: AnyTruth, time_s: np.ndarray) -> np.ndarray:
     """Whether times (n,) are in a turn, or in the 30 s after one."""
     fine_s = np.arange(0.0, time_s.max(initial=0.0) + 1.0, 0.5)
     turning_s = fine_s[np.abs(truth.turn_rate_at(fine_s)) > np.deg2rad(TURN_DEG_S)]
-    since_s = time_s[:, np.newaxis] - turning_s
-    return ((since_s >= 0.0) & (since_s <= AFTER_TURN_S)).any(axis=1)
+    return solent.soon_after(turning_s, time_s)
 
 
 # Range and bearing --------------------------------------------------------------------------------
@@ -340,13 +333,7 @@ def existences(scene: str, seed: int) -> np.ndarray:
     confirmed tracks first.
     """
     (episode,) = SCENES[scene].record(np.random.default_rng([seed, *map(ord, scene)]))
-    tracker = wl.Tracker(
-        wl.Radar(
-            range_std_m=DENSE_RADAR.range_std_m,
-            bearing_std_rad=DENSE_RADAR.bearing_std_rad,
-            period_s=DENSE_RADAR.period_s,
-        )
-    )
+    tracker = wl.Tracker(radar_of(DENSE_RADAR))
     truth = np.array([of.state_at(episode.time_s) for of in (episode.truth or {}).values()])
     found = []
     for k, scan in enumerate(episode.scans):

@@ -21,10 +21,11 @@ import numpy as np
 
 import wakeline as wl
 from wakeline import metrics, plot
+from wakeline._units import NAUTICAL_MILE_M
 from wakeline.scenario import RadarSimulator
 from wakeline.scenario.truth import Segment, Truth
 
-from .base import Done, Picture, Plan, Request, Rows, Study
+from .base import Done, Picture, Plan, Request, Rows, Study, means_of, radar_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +40,6 @@ COARSE = RadarSimulator(25.0, np.deg2rad(1.2), 3.0, detection_probability=0.9, r
 COARSE_PLACE = (4000.0, -2000.0)
 AIS_STD_M = 5.0
 AIS_STD_MPS = 0.2
-NAUTICAL_MILE_M = 1852.0
 
 _RUNS_PER_SCENE = 20
 
@@ -211,15 +211,9 @@ def _tracker(sensors: set[int]) -> tuple[wl.Tracker, dict[int, int]]:
     """A tracker with the radars among some sensors, and their numbers in it."""
     radars = {0: FINE, 1: COARSE}
     used = sorted(sensors & set(radars))
-    settings = [
-        wl.Radar(
-            range_std_m=radars[k].range_std_m,
-            bearing_std_rad=radars[k].bearing_std_rad,
-            period_s=radars[k].period_s,
-        )
-        for k in used
-    ]
-    return wl.Tracker(settings), {k: number for number, k in enumerate(used)}
+    return wl.Tracker([radar_of(radars[k]) for k in used]), {
+        k: number for number, k in enumerate(used)
+    }
 
 
 def follow(scene: Scene, sensors: set[int]) -> dict[str, float]:
@@ -290,9 +284,9 @@ def _rows(done: Done) -> Rows:
         runs = [run for (of, _), run in done.items() if of == name]
         for estimator in estimators if runs else ():
             figures = [run[estimator] for run in runs]
-            means = {key: float(np.mean([one[key] for one in figures])) for key in figures[0]}
-            means["double_s"] = float(max(one["double_s"] for one in figures))
-            rows.append({"scenario": name, "estimator": estimator, **means})
+            double_s = float(max(one["double_s"] for one in figures))
+            row = {"scenario": name, "estimator": estimator, **means_of(figures)}
+            rows.append(row | {"double_s": double_s})
     return rows
 
 

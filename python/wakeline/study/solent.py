@@ -152,6 +152,11 @@ def turning(truth: AnyTruth, time_s: np.ndarray) -> np.ndarray:
     half = int(_WINDOW_S / 2)
     rate_deg_s = (course_deg[2 * half :] - course_deg[: -2 * half]) / _WINDOW_S
     turning_s = fine_s[half:-half][np.abs(rate_deg_s) > TURN_RATE_DEG_S]
+    return soon_after(turning_s, time_s)
+
+
+def soon_after(turning_s: np.ndarray, time_s: np.ndarray) -> np.ndarray:
+    """Whether times (n,) are 0 to 30 s after any of the times of a turn."""
     since_s = time_s[:, np.newaxis] - turning_s
     return ((since_s >= 0.0) & (since_s <= AFTER_TURN_S)).any(axis=1)
 
