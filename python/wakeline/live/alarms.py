@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import math
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -35,7 +35,6 @@ KINDS = (
     "ais disagrees",
 )
 _PRIORITIES = {"cpa": "alarm", "zone entry": "alarm", "ais disagrees": "caution"}
-_MOMENTARY = ("zone exit", "lost target", "new target")
 _SHOWN = ("confirmed", "coasting")
 _COUNTED_AS_LOST = ("missed", "uncertain", "failed", "too_fast", "")
 _DANGER = (
@@ -310,7 +309,8 @@ class Alarms:
         known = np.isfinite(mean).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))
         track_id, mean, covariance = track_id[known], mean[known], covariance[known]
 
-        self._end_momentary()
+        lasts_s = self.config.momentary_s
+        self._end_momentary("time over", lambda one: time_s - one.alarm.begin_s >= lasts_s)
         self._pass_targets(now, events)
         place = None if own is None else OwnPlace(own[0], own[2], heading_rad)
         std_m = np.sqrt(_largest_variance(covariance))
@@ -350,9 +350,8 @@ class Alarms:
         zone, track_id = crossing.zone, crossing.track_id
         who = self._called(track_id)
         if crossing.entered:
-            for one in [m for m in self._momentary if m.key == (zone.zone_id, track_id)]:
-                self._end(one.alarm, "entered again")
-                self._momentary.remove(one)
+            key = (zone.zone_id, track_id)
+            self._end_momentary("entered again", lambda one: one.key == key)
             if "entry" in zone.triggers:
                 how = "is inside" if crossing.born_inside else "has entered"
                 self._stays[zone.zone_id, track_id, "entry"] = self._begin(
@@ -482,9 +481,7 @@ class Alarms:
             return False
         for key in [key for key in self._stays if key[0] == zone_id]:
             self._end(self._stays.pop(key), "zone deleted")
-        for one in [m for m in self._momentary if m.alarm.zone_id == zone_id]:
-            self._end(one.alarm, "zone deleted")
-            self._momentary.remove(one)
+        self._end_momentary("zone deleted", lambda one: one.alarm.zone_id == zone_id)
         return True
 
     def forget(self, track_id: int) -> None:
@@ -516,9 +513,7 @@ class Alarms:
         for number, one in self._encounters.items():
             if one is alarm:
                 self._watch.acknowledge(number)
-        for one in [m for m in self._momentary if m.alarm is alarm]:
-            self._end(alarm, "acknowledged")
-            self._momentary.remove(one)
+        self._end_momentary("acknowledged", lambda one: one.alarm is alarm)
 
     def _silence(self, alarm: Alarm) -> None:
         if not alarm.acknowledged:
@@ -588,11 +583,10 @@ class Alarms:
             self._momentary.remove(alike[0])
         self._momentary.append(_Momentary(self._begin(kind, text, tracks, zone_id=zone_id), key))
 
-    def _end_momentary(self) -> None:
-        for one in list(self._momentary):
-            if self.time_s - one.alarm.begin_s >= self.config.momentary_s:
-                self._end(one.alarm, "time over")
-                self._momentary.remove(one)
+    def _end_momentary(self, reason: str, over: Callable[[_Momentary], bool]) -> None:
+        for one in [one for one in self._momentary if over(one)]:
+            self._end(one.alarm, reason)
+            self._momentary.remove(one)
 
     def _end(self, alarm: Alarm, reason: str) -> None:
         alarm.end_s, alarm.reason = self.time_s, reason

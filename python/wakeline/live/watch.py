@@ -107,7 +107,7 @@ class AlarmWatcher(AlarmBoard):
             columns(session.tracker.tracks(), lambda one: one.mean),
             own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
             heading_rad=own.heading_rad if hasattr(own, "heading_rad") else float("nan"),
-            events=[SimpleNamespace(**one) for one in getattr(session, "news", ())],
+            events=[SimpleNamespace(**one) for one in session.news],
             sensors=_sensors(session, time_s),
             disagreements=_disagreements(session),
         )
@@ -156,7 +156,7 @@ def _sensors(session: Any, time_s: float) -> list[Sensor]:
 
 
 def _disagreements(session: Any) -> list[Disagreement]:
-    return [Disagreement(*one) for one in getattr(session, "disagreements", lambda: ())()]
+    return [Disagreement(*one) for one in session.disagreements()]
 
 
 def _answer(good: bool, error: str) -> dict[str, Any]:
