@@ -6,7 +6,10 @@ import time
 
 import numpy as np
 
+import wakeline as wl
+from wakeline.live.playback import Playback, RecordedPlots
 from wakeline.live.watch import AlarmBoard
+from wakeline.tracking import Settings
 
 RANGE_M = 3000.0
 ROWS, CELLS = 512, 256
@@ -93,3 +96,12 @@ class Harbor:
         for part in np.array_split(np.arange(ROWS), 8):
             for taker in self.sweeps:
                 taker("A", azimuth_rad[part], math.nan, RANGE_M, cells[part])
+
+
+def recorded_plots(log=None):
+    """A playback of the first episode of the joyride."""
+    recording = wl.recording.load("joyride")
+    episode = recording.episodes[0]
+    settings = Settings.default().knowing(recording.radar)
+    source = RecordedPlots(episode, settings)
+    return Playback(source, own=episode.own, settings=settings, log=log)

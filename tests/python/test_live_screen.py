@@ -8,8 +8,7 @@ import pytest
 
 import browser as chromium
 import wakeline as wl
-from harbor import ECHOES, RANGE_M, Harbor
-from wakeline.live.playback import Playback, RecordedPlots
+from harbor import ECHOES, RANGE_M, Harbor, recorded_plots
 from wakeline.live.web import WebServer
 
 pytestmark = pytest.mark.skipif(not chromium.is_there(), reason="needs chromium and chromedriver")
@@ -467,10 +466,8 @@ def test_a_page_is_back_when_the_server_is(page):
 
 
 def test_a_replay_is_set_and_stopped(page):
-    recording = wl.recording.load("joyride")
-    episode = recording.episodes[0]
-    settings = wl.tracking.Settings.default().knowing(recording.radar)
-    playback = Playback(RecordedPlots(episode, settings), own=episode.own, settings=settings)
+    episode = wl.recording.load("joyride").episodes[0]
+    playback = recorded_plots()
     with WebServer(playback, port=0) as server:
         playback.start()
         try:

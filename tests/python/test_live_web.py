@@ -15,17 +15,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wakeline as wl
-from harbor import CELLS, RANGE_M, ROWS, Harbor
+from harbor import CELLS, RANGE_M, ROWS, Harbor, recorded_plots
 from wakeline.cli import main
 from wakeline.live.alarms import AlarmLog
-from wakeline.live.playback import Playback, RecordedPlots, RecordedTracks, SessionPlayback
+from wakeline.live.playback import Playback, RecordedTracks, SessionPlayback
 from wakeline.live.record import Recorder
 from wakeline.live.session import Session
 from wakeline.live.web import WebServer
 from wakeline.live.web.echoes import EchoImage, EchoReader
 from wakeline.live.web.scene import TRACK_COLUMNS, Scene
 from wakeline.live.web.signalk import spokes_of
-from wakeline.tracking import Settings
 
 BASE = "/signalk/v2/api/vessels/self/radars"
 
@@ -457,14 +456,6 @@ def same(a, b):
         return json.dumps(value, default=lambda array: array.tolist())
 
     return plain(a) == plain(b)
-
-
-def recorded_plots(log=None):
-    recording = wl.recording.load("joyride")
-    episode = recording.episodes[0]
-    settings = Settings.default().knowing(recording.radar)
-    source = RecordedPlots(episode, settings)
-    return Playback(source, own=episode.own, settings=settings, log=log)
 
 
 def recorded_tracks(log=None):
