@@ -4,7 +4,8 @@ const ramp = (...stops) => {
   const levels = [];
   for (let k = 0; k < 16; k += 1) {
     const at = (k / 15) * (stops.length - 1);
-    const [i, share] = [Math.min(Math.floor(at), stops.length - 2), at - Math.min(Math.floor(at), stops.length - 2)];
+    const i = Math.min(Math.floor(at), stops.length - 2);
+    const share = at - i;
     levels.push(stops[i].map((v, c) => v + share * (stops[i + 1][c] - v)));
   }
   return levels;

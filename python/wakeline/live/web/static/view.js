@@ -125,11 +125,7 @@ export class View {
 }
 
 function ringOf(range_m) {
-  for (const steps of Object.values(RANGES_M)) {
-    if (steps.some((s) => Math.abs(s - range_m) < 1e-6 * range_m)) {
-      const thirds = [0.75, 1.5, 3, 6, 12, 24, 48, 96].some((miles) => Math.abs(miles * 1852 - range_m) < 1);
-      return range_m / (thirds ? 3 : steps === RANGES_M.metric ? 5 : 4);
-    }
-  }
-  return range_m / 4;
+  const shown = (step_m) => Math.abs(step_m - range_m) < 1e-6 * range_m;
+  if (RANGES_M.metric.some(shown)) return range_m / 5;
+  return range_m / (RANGES_M.nautical.slice(3).some(shown) ? 3 : 4); // thirds from 0.75 NM
 }
