@@ -9,8 +9,8 @@ starboard.
 """
 
 import sys as _sys
-from importlib.metadata import PackageNotFoundError as _PackageNotFoundError
-from importlib.metadata import version as _version
+from importlib import import_module as _import_module
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from . import _starting as _starting  # first, so that Ctrl-C ends the command while it imports
 from ._engine import (
@@ -135,28 +135,26 @@ for _noun in (
 ):
     _sys.modules[f"{__name__}.{_noun.__name__.rpartition('.')[2]}"] = _noun
 
-# These modules use the nouns above.
-from . import (  # noqa: E402, F401
-    _pickling,
-    extraction,
-    forecast,
-    live,
-    metrics,
-    montecarlo,
-    own_ship,
-    plot,
-    recording,
-    scenario,
-    search,
-    study,
-    tracking,
-)
-from .tracking import track_recording  # noqa: E402
+from . import _pickling as _pickling  # noqa: E402
 
-try:
-    __version__ = _version("wakeline")
-except _PackageNotFoundError:  # run from a checkout that is not installed
-    __version__ = "0+unknown"
+if _TYPE_CHECKING:
+    from . import (
+        extraction,
+        forecast,
+        live,
+        metrics,
+        montecarlo,
+        own_ship,
+        plot,
+        recording,
+        scenario,
+        search,
+        study,
+        tracking,
+    )
+    from .tracking import track_recording
+
+    __version__: str
 
 __all__ = [
     "AdaptiveAlphaBeta",
@@ -256,3 +254,47 @@ __all__ = [
 __all__ += [
     name for noun in (measurement, motion) for name in vars(noun) if not name.startswith("_")
 ]
+
+# What is imported when it is first used, so that `import wakeline` is quick.
+_MODULES = {
+    "extraction",
+    "forecast",
+    "live",
+    "metrics",
+    "montecarlo",
+    "own_ship",
+    "plot",
+    "recording",
+    "scenario",
+    "search",
+    "study",
+    "tracking",
+}
+_FUNCTIONS = {"track_recording": "tracking"}
+
+
+def _installed_version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("wakeline")
+    except PackageNotFoundError:  # run from a checkout that is not installed
+        return "0+unknown"
+
+
+if not _TYPE_CHECKING:  # to a type checker, the names are those imported above
+
+    def __getattr__(name: str) -> object:
+        if name in _MODULES:
+            return _import_module(f".{name}", __name__)  # which makes it an attribute
+        if name in _FUNCTIONS:
+            value = getattr(_import_module(f".{_FUNCTIONS[name]}", __name__), name)
+        elif name == "__version__":
+            value = _installed_version()
+        else:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        globals()[name] = value
+        return value
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__, "__version__"})

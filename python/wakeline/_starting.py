@@ -1,4 +1,4 @@
-"""Ctrl-C while the command is imported, which takes most of a second."""
+"""Ctrl-C while the command is imported."""
 
 from __future__ import annotations
 

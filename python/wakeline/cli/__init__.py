@@ -11,30 +11,31 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from typing import NoReturn, TextIO
+from importlib import import_module
+from typing import Any, NoReturn, TextIO
 
-from wakeline import FilterError, __version__, _starting
+from wakeline import FilterError, _starting
 from wakeline._brief import with_short_quotes
-from wakeline.recording.files import check_writable, remove_begun
 
-from . import (
-    bench,
-    calibrate,
-    demo,
-    export,
-    interrupt,
-    live,
-    navigate,
-    outputs,
-    score,
-    search,
-    study,
-    track,
-    view,
-)
+from . import interrupt
 
 _BAD_INPUT = 2
 _NOBODY_READS = 141
+
+# Each command is a module of its name, which is imported when the command is given.
+_COMMANDS = {
+    "demo": "track and score a bundled real recording",
+    "track": "track a recording",
+    "live": "track what radars on the network send",
+    "view": "show a session or tracks in the browser",
+    "calibrate": "find the offsets of a radar from AIS or GNSS reports",
+    "navigate": "own ship's solution from an NMEA 0183 log or an IMU log",
+    "search": "drift of an object and a search plan, from a scenario in TOML",
+    "score": "score tracks against truth",
+    "export": "write tracks as GPX, KML, GeoJSON or CSV with latitude and longitude",
+    "study": "reproduce a paper's scenarios, with its figures beside ours",
+    "bench": "throughput on this machine",
+}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -61,14 +62,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str]) -> int:
     try:
+        arguments = _parser().parse_args(argv)  # imports the command
         _starting.started()
-        arguments = _parser().parse_args(argv)
-        if arguments.json is not None:
-            _check_json(arguments)
-        with warnings.catch_warnings():
-            if not sys.warnoptions:
-                warnings.simplefilter("ignore", UserWarning)  # of libraries, about their code
-            arguments.run(arguments)
+        _execute(arguments)
         if sys.stdout is not None:
             sys.stdout.flush()
     except SystemExit as done:  # --help and --version
@@ -82,13 +78,29 @@ def _run(argv: Sequence[str]) -> int:
     except (ValueError, OSError, FilterError, MemoryError) as error:
         print(f"wakeline: {_one_line(error)}", file=sys.stderr)
         return _BAD_INPUT
+    return 0
+
+
+def _execute(arguments: argparse.Namespace) -> None:
+    from . import outputs
+
+    try:
+        if arguments.json is not None:
+            _check_json(arguments)
+        with warnings.catch_warnings():
+            if not sys.warnoptions:
+                warnings.simplefilter("ignore", UserWarning)  # of libraries, about their code
+            arguments.run(arguments)
     finally:
         outputs.release_folders()
-    return 0
 
 
 def _check_json(arguments: argparse.Namespace) -> None:
     """Fail before the work if the JSON cannot or must not be written."""
+    from wakeline.recording.files import check_writable, remove_begun
+
+    from . import outputs
+
     if hasattr(arguments, "inputs"):
         outputs.check_no_input("--json", [arguments.json], arguments.inputs(arguments))
     if hasattr(arguments, "out"):
@@ -111,28 +123,47 @@ class _Parser(argparse.ArgumentParser):
         raise ValueError(f"{message} (see {self.prog} --help)")
 
 
+class _Commands(argparse._SubParsersAction):
+    """The commands, of which the given one adds its options."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        if (name := values[0]) in self.choices:
+            import_module(f".{name}", __name__).add_to(self.choices[name])
+        super().__call__(parser, namespace, values, option_string)
+
+
+class _Version(argparse.Action):
+    """Prints the version, which takes time to find."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> NoReturn:
+        from wakeline import __version__
+
+        print(f"wakeline {__version__}")
+        parser.exit()
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="wakeline", description="Tracks maneuvering vessels with radar, and scores the tracks."
     )
-    parser.add_argument("--version", action="version", version=f"wakeline {__version__}")
-    commands = parser.add_subparsers(
-        title="commands", required=True, metavar="COMMAND", parser_class=_Parser
+    parser.add_argument(
+        "--version", action=_Version, nargs=0, help="show program's version number and exit"
     )
-    for command in (
-        demo,
-        track,
-        live,
-        view,
-        calibrate,
-        navigate,
-        search,
-        score,
-        export,
-        study,
-        bench,
-    ):
-        command.add_to(commands)
+    commands = parser.add_subparsers(
+        title="commands",
+        required=True,
+        metavar="COMMAND",
+        action=_Commands,
+        parser_class=_Parser,
+    )
+    for name, about in _COMMANDS.items():
+        commands.add_parser(name, help=about)
     return parser
 
 

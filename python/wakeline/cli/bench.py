@@ -65,13 +65,11 @@ class Work:
     settle: Callable[[], Any] | None = None
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "bench",
-        help="throughput on this machine",
-        description="Measures throughput per estimator on this machine, from Python: the best of "
-        f"{REPEATS} times, with ratios within the run.",
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Measures throughput per estimator on this machine, from Python: the best of "
+        f"{REPEATS} times, with ratios within the run."
     )
     parser.add_argument(
         "what",

@@ -43,15 +43,11 @@ _UNITS = (
 )
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "calibrate",
-        help="find the offsets of a radar from AIS or GNSS reports",
-        description=_ABOUT,
-        epilog=_COLUMNS,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = _ABOUT
+    parser.epilog = _COLUMNS
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument(
         "plots",
         type=Path,

@@ -23,13 +23,11 @@ The truth is from GNSS aboard.
 }
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "demo",
-        help="track and score a bundled real recording",
-        description="Tracks a bundled real recording, scores the tracks against GNSS truth, and "
-        "writes tracks and pictures.",
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Tracks a bundled real recording, scores the tracks against GNSS truth, and "
+        "writes tracks and pictures."
     )
     parser.add_argument(
         "--recording", choices=recording.names(), default="joyride", help="default %(default)s"

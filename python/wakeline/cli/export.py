@@ -12,13 +12,11 @@ from wakeline.recording import Tracks, export_tracks, read_tracks
 from . import options, outputs
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "export",
-        help="write tracks as GPX, KML, GeoJSON or CSV with latitude and longitude",
-        description="Writes tracks with latitude and longitude for maps and navigation programs. "
-        "The ending of each file is its format: .gpx, .kml, .geojson or .csv.",
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Writes tracks with latitude and longitude for maps and navigation programs. "
+        "The ending of each file is its format: .gpx, .kml, .geojson or .csv."
     )
     parser.add_argument(
         "tracks",

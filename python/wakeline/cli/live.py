@@ -52,15 +52,11 @@ formats:
 """
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "live",
-        help="track what radars on the network send",
-        description=_ABOUT,
-        epilog=_FORMATS,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = _ABOUT
+    parser.epilog = _FORMATS
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument(
         "config",
         nargs="?",

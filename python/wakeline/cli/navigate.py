@@ -34,12 +34,10 @@ _METHODS = {
 }
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "navigate",
-        help="own ship's solution from an NMEA 0183 log or an IMU log",
-        description="Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Reads NMEA 0183, fuses fixes, speeds, headings and rates of turn, and writes "
         "own.csv and pictures. A log whose name ends in .csv is that of an IMU: a time, "
         "forward_mps2, starboard_mps2, yaw_rate_deg_s, and lat_deg, lon_deg and heading_deg or an "
         "NMEA 0183 log beside it (--nmea); its biases are estimated. Parts separated by a gap of a "
@@ -48,7 +46,7 @@ def add_to(commands: argparse._SubParsersAction) -> None:
         "Problems in the log are counted and listed in problems.csv; none is fatal. The status in "
         "own.csv is ok, coasting (no accepted fix for five seconds), rejected (a fix was rejected) "
         "or jumped (persistent rejected fixes moved the position by over 50 m; until it returns or "
-        "all fixes have been accepted for a minute).",
+        "all fixes have been accepted for a minute)."
     )
     parser.add_argument(
         "log", type=Path, metavar="LOG", help="sentences, one per line; or .csv with rows of an IMU"

@@ -22,14 +22,12 @@ from wakeline.recording import (
 from . import options, outputs, report
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "score",
-        help="score tracks against truth",
-        description="Scores tracks against truth: accuracy, continuity, false tracks. The JSON has "
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Scores tracks against truth: accuracy, continuity, false tracks. The JSON has "
         "one row per scenario, named after the tracks file if it has no name, and one of all "
-        "together, scenario all.",
+        "together, scenario all."
     )
     parser.add_argument("tracks", type=Path, metavar="TRACKS.csv")
     parser.add_argument("truth", type=Path, metavar="TRUTH.csv")

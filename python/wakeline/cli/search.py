@@ -24,14 +24,12 @@ _POINTS_A_LEG = 20
 _NOTED_SHARE = 0.001
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "search",
-        help="drift of an object and a search plan, from a scenario in TOML",
-        description="Drifts a cloud of particles from the last known position, plans the search of "
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Drifts a cloud of particles from the last known position, plans the search of "
         "each unit for the highest probability of success (POS), and compares the plan with a "
-        "naive square about the datum and with a bound. Writes routes (CSV, GPX) and pictures.",
+        "naive square about the datum and with a bound. Writes routes (CSV, GPX) and pictures."
     )
     parser.add_argument(
         "scenario",

@@ -15,13 +15,10 @@ _RUNS = 500
 _SEED = 0
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "study",
-        help="reproduce a paper's scenarios, with its figures beside ours",
-        description="Runs the scenarios of papers again, and prints a table of the papers' figures "
-        "beside ours.",
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = (
+        "Runs the scenarios of papers again, and prints a table of the papers' figures beside ours."
     )
     actions = parser.add_subparsers(
         title="actions", required=True, metavar="ACTION", parser_class=type(parser)

@@ -74,15 +74,11 @@ columns, separated by commas, recognized by name in any order:
 """
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "track",
-        help="track a recording",
-        description=_ABOUT,
-        epilog=_COLUMNS,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = _ABOUT
+    parser.epilog = _COLUMNS
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument(
         "plots",
         nargs="?",

@@ -24,14 +24,10 @@ Tracks of a session come out of its recorded data again, bit for bit.
 """
 
 
-def add_to(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the program."""
-    parser = commands.add_parser(
-        "view",
-        help="show a session or tracks in the browser",
-        description=_ABOUT,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command to its parser."""
+    parser.description = _ABOUT
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("file", type=Path, metavar="SESSION|TRACKS.csv")
     parser.add_argument("--own", type=Path, metavar="F.csv", help="own ship, for tracks")
     parser.add_argument(
