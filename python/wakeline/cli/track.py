@@ -12,7 +12,7 @@ from typing import Any
 
 from wakeline import FilterError, metrics
 from wakeline._brief import many
-from wakeline.recording import Recording
+from wakeline.recording import Episode, OwnShipMotion, Recording
 from wakeline.recording.files import replacing_together
 from wakeline.tracking import (
     VESSELS,
@@ -26,6 +26,7 @@ from wakeline.tracking import (
     median_step_s,
     open_recording,
     read_settings,
+    smooth_episode,
     track_episode,
     write_tables,
 )
@@ -117,6 +118,11 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         help="CSV of vessels to be acquired, with --method strobe; default: from extracted plots",
     )
     parser.add_argument(
+        "--smooth",
+        action="store_true",
+        help="smooth the tracks after the recording: each row also uses the plots after it",
+    )
+    parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
     )
     parser.add_argument(
@@ -143,6 +149,8 @@ def run(arguments: argparse.Namespace) -> None:
     recording.notes.extend(known.memory_notes(arguments.method))
     radar = _radar_text(arguments, settings, known, recording)
     danger = arguments.own is not None
+    if arguments.smooth:
+        track = _smoothed(track)
     tracks = track_into(arguments.out, recording, known, radar, danger=danger, track=track)
     rows = _rows(tracks.episodes, arguments.plots.name)
     if arguments.truth is not None:
@@ -184,6 +192,17 @@ def _opened(
         range_scale_m=arguments.range_scale,
         columns=dict(arguments.columns),
     )
+
+
+def _smoothed(track: Callable[..., TrackedEpisode]) -> Callable[..., TrackedEpisode]:
+    """What tracks an episode and smooths its tracks."""
+
+    def track_and_smooth(
+        episode: Episode, settings: Settings, *, own: OwnShipMotion | None, named: bool
+    ) -> TrackedEpisode:
+        return smooth_episode(track(episode, settings, own=own, named=named), settings)
+
+    return track_and_smooth
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wakeline._brief import brief, many, span
+from wakeline._brief import brief, cut, many, span
 from wakeline._checks import real_numbers, shaped
+from wakeline._frames import data_frame
 
 from .errors import RecordingError
 from .files import replacing
 from .table import TIME_NAMES, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+    from .model import Episode, Recording
 
 _FIRST = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
 COVARIANCE_COLUMNS = (
@@ -134,6 +142,46 @@ class Tracks:
     def ids(self) -> list[str]:
         """The track ids in order of first row."""
         return list(dict.fromkeys(self.track_id.tolist()))
+
+    def __getitem__(self, track_id: str | int) -> Tracks:
+        """The rows of one track, in every scenario that has its id.
+
+        Raises
+        ------
+        KeyError
+            When no row has the id.
+        """
+        chosen = self.track_id == str(track_id)
+        if not chosen.any():
+            raise KeyError(f"no track {track_id!r}, but {cut(', '.join(self.ids())) or 'none'}")
+        return self.where(chosen)
+
+    def __iter__(self) -> Iterator[Tracks]:
+        """The rows of each track, in order of first row."""
+        return map(self.__getitem__, self.ids())
+
+    def to_pandas(self) -> DataFrame:
+        """The rows as a `pandas.DataFrame` with the columns of a tracks file (`write_tracks`)."""
+        return data_frame(_columns(self))
+
+    def plot(self, recording: Recording | Episode | None = None, **options: Any) -> Figure:
+        """The tracks on a map, with a recording below them; see :func:`wakeline.plot.map`.
+
+        Parameters
+        ----------
+        recording : Recording or Episode, optional
+            Plots, own ship and truth.
+        **options
+            As for :func:`wakeline.plot.map`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            For :func:`wakeline.plot.save`.
+        """
+        from wakeline.plot import map as draw_map
+
+        return draw_map(self, recording, **options)
 
     @property
     def north_m(self) -> np.ndarray:

@@ -6,10 +6,10 @@
 >>> len(wl.track_recording("joyride").ids())
 1
 
-:func:`track_episode` tracks one episode, :func:`open_recording` opens a recording, and
-:class:`Settings` are the contents of a settings file. :func:`watch_tracks` finds the vessels that
-come dangerously close to each other or to own ship. :func:`wakeline.recording.scan_numbers` groups
-plots into scans.
+:func:`track_episode` tracks one episode, :func:`smooth_episode` smooths its tracks,
+:func:`open_recording` opens a recording, and :class:`Settings` are the contents of a settings file.
+:func:`watch_tracks` finds the vessels that come dangerously close to each other or to own ship.
+:func:`wakeline.recording.scan_numbers` groups plots into scans.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from .encounters import (
 )
 from .opening import open_recording
 from .settings import VESSELS, Settings, SettingsError, read_settings
+from .smoothing import smooth_episode
 from .strobes import Designation, follow_video, read_designations
 from .tables import write_tables
 from .tracked import (
@@ -57,6 +58,7 @@ __all__ = [
     "read_designations",
     "read_reports",
     "read_settings",
+    "smooth_episode",
     "track_episode",
     "track_recording",
     "watch_tracks",

@@ -146,6 +146,10 @@ class Settings:
         """A new tracker for other radars."""
         return wl.Tracker(radar, _engine("tracker", self.tracker), _engine("models", self.models))
 
+    def make_estimator(self, radar: wl.Radar) -> wl.Imm:
+        """A new estimator as the tracker has one for each track."""
+        return wl.vessel_imm(radar, _engine("models", self.models))
+
     def make_strobe_tracker(
         self, period_s: float, bits: int = 8, **estimated: float
     ) -> wl.StrobeTracker:
@@ -158,7 +162,7 @@ class Settings:
         return wl.StrobeTracker(
             radar,
             _engine("strobes", self.strobes | open_ones),
-            wl.vessel_imm(radar, _engine("models", self.models)),
+            self.make_estimator(radar),
             bits=bits,
         )
 

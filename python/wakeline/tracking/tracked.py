@@ -6,6 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from wakeline.recording import Episode, OwnShipMotion, Recording, Scan, Tracks
 from .encounters import Encounter, watch_tracks
 from .opening import open_recording
 from .settings import Settings, read_settings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MODE_NAMES = ("cruising", "steady", "restless", "turning")
 _COLUMNS = ("track_id", "status", "time_s", "mean", "covariance", "mode_probability", "nis")
@@ -92,6 +96,49 @@ class TrackedRecording(Tracks):
             episodes=list(episodes),
             settings=settings,
         )
+
+    def smooth(
+        self, time_s: np.ndarray | Sequence[float] | None = None, *, ahead_s: float = 0.0
+    ) -> TrackedRecording:
+        """The tracks with each state also estimated from the plots after it.
+
+        A track begins with its first row as tracked; from there on the estimator of the tracker is
+        smoothed over the plots that most probably belong to the track. Events, plots and their
+        tracks remain, encounters are those of the smoothed tracks.
+
+        Parameters
+        ----------
+        time_s : array_like (T,), optional
+            Times of the rows, for each track from its first row on: also between scans; default the
+            times of the rows as tracked.
+        ahead_s : float
+            How long after its last row a track is predicted, where `time_s` has such times.
+
+        Raises
+        ------
+        FilterError
+            When a track cannot be smoothed.
+
+        Examples
+        --------
+        >>> import numpy as np, wakeline as wl
+        >>> tracks = wl.track_recording("joyride")
+        >>> smoothed = tracks.smooth()
+        >>> each_second = tracks.smooth(np.arange(0.0, 60.0) + tracks.time_s[0])
+        >>> len(each_second)
+        60
+        """
+        from .smoothing import smooth_episode
+
+        parts = [
+            smooth_episode(part, self.settings, time_s=time_s, ahead_s=ahead_s)
+            for part in self.episodes
+        ]
+        return TrackedRecording.of(self.recording, parts, self.settings)
+
+    def plot(self, recording: Recording | Episode | None = None, **options: Any) -> Figure:
+        """The tracks on a map with the plots and own ship of their recording."""
+        return super().plot(self.recording if recording is None else recording, **options)
 
     @property
     def encounters(self) -> list[Encounter]:
