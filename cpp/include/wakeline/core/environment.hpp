@@ -25,3 +25,9 @@
 #error \
     "wakeline: min or max is a macro (of windows.h): define NOMINMAX, or write #undef min and #undef max before wakeline"
 #endif
+
+// `wakeline::tracker` is linked. Units for a wider instruction set compile the tracker themselves, as
+// their lanes are wider.
+#if defined(WAKELINE_COMPILED_TRACKER) && !defined(__AVX__)
+#define WAKELINE_USES_COMPILED_TRACKER
+#endif

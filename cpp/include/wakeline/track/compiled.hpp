@@ -8,9 +8,11 @@
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
 
-// Units for a wider instruction set compile it themselves, as their lanes are wider.
-#if defined(WAKELINE_COMPILED_TRACKER) && !defined(__AVX__)
+#ifdef WAKELINE_USES_COMPILED_TRACKER
 namespace wakeline {
+
+template <>
+inline constexpr bool kTrackerIsCompiled<VesselImm> = true;
 
 extern template class Tracker<VesselImm>;
 

@@ -11,7 +11,6 @@
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/types.hpp"
-#include "wakeline/track/clutter_map.hpp"
 
 namespace wakeline {
 

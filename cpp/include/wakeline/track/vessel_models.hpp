@@ -157,7 +157,7 @@ using VesselImm = Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf
 
 /// The estimator of a tracker for this radar. Throws `std::invalid_argument` on a setting that
 /// makes no sense.
-#if defined(WAKELINE_COMPILED_TRACKER) && !defined(__AVX__)  // as in compiled.hpp
+#ifdef WAKELINE_USES_COMPILED_TRACKER
 VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {});
 #else
 inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {}) {

@@ -1,5 +1,5 @@
-// A console that links the compiled tracker.
-#include <wakeline/wakeline.hpp>
+// A console that links the compiled tracker, and does not read what it is made of.
+#include <wakeline/track/compiled.hpp>
 
 int main() {
   using namespace wakeline;
@@ -10,5 +10,19 @@ int main() {
     const Plot plot{.time_s = time_s, .range_m = 3000.0, .bearing_rad = 0.5};
     if (tracker.process(time_s, std::span(&plot, 1)).status != Status::kOk) return 1;
   }
-  return tracker.size() > 0 ? 0 : 1;
+  for (int report = 0; report < 3; ++report)
+    (void)tracker.report({.identity = "636013927",
+                          .time_s = tracker.time_s() + report,
+                          .position_m = {2633.0, 1438.0}});
+  if (tracker.find("ais", "636013927") == nullptr) return 2;
+  const double bearing_rad = 0.5;
+  if (tracker.partial({.time_s = tracker.time_s(), .values = std::span(&bearing_rad, 1)}).status !=
+      Status::kOk)
+    return 3;
+  const auto saved = tracker.save();
+  Tracker<VesselImm> restored(radar, TrackerConfig{}, vessel_imm(radar));
+  if (!restored.restore(saved) || restored.size() != tracker.size()) return 4;
+  int shown = 0;
+  restored.for_each([&](const Track& track) { shown += track.shown(); });
+  return shown > 0 ? 0 : 5;
 }

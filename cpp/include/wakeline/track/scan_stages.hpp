@@ -1,0 +1,643 @@
+// SPDX-FileCopyrightText: 2026 Wakeline developers
+// SPDX-License-Identifier: MIT
+//
+// The stages of a scan, a whole turn or a sector of one radar.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "wakeline/track/association.hpp"
+#include "wakeline/track/association_probabilities.hpp"
+#include "wakeline/track/duplicates.hpp"
+#include "wakeline/track/life_cycle.hpp"
+#include "wakeline/track/mode_positions.hpp"
+#include "wakeline/track/picture.hpp"
+#include "wakeline/track/plot_likelihood.hpp"
+
+namespace wakeline {
+
+/// Changes a picture by scans. `process` is the list of stages that a scan goes through; each is a
+/// header of this folder, with its input as arguments and its output its own. All memory is taken
+/// by the constructor.
+template <class Estimator, class Steps>
+class ScanStages {
+ public:
+  explicit ScanStages(Picture<Estimator, Steps>& picture)
+      : picture_(picture),
+        candidates_(picture.estimators.size()),
+        propagation_(picture.config),
+        assignment_(picture.config),
+        duplicates_(picture.config, picture.gate.threshold()) {
+    const std::size_t tracks = picture.estimators.size();
+    const auto plots = static_cast<std::size_t>(picture.config.max_plots);
+    for (std::vector<int>* slots : {&due_, &waiting_, &rivals_, &competing_})
+      slots->reserve(tracks);
+    touched_.resize(tracks);
+    arcs_.reserve(tracks);
+    is_candidate_.reserve(plots);
+    is_contested_.reserve(plots);
+  }
+
+  /// A whole turn of a radar where `sector` is null.
+  ScanReport process(int radar, double time_s, std::span<const Plot> plots,
+                     const Sector* sector) noexcept {
+    if (!picture_.has_radar(radar)) return picture_.rejected(Status::kNotFinite);
+    const RadarState& before = picture_.radars[static_cast<std::size_t>(radar)];
+    time_s = before.radar.true_time_s(time_s);
+    if (!std::isfinite(time_s) || time_s > picture_.latest_time_s())
+      return picture_.rejected(Status::kNotFinite);
+    if (before.started && time_s < before.time_s)
+      return picture_.rejected(Status::kNegativeTimeStep);
+    if (picture_.started && time_s < picture_.scan_time_s - before.radar.period_s)
+      return picture_.rejected(Status::kNegativeTimeStep);
+    picture_.clear_results();
+    picture_.at_hand = radar;
+    whole_turn_ = sector == nullptr;
+    const double dt_s = state().started ? time_s - state().time_s : 0.0;
+    picture_.scan_time_s = picture_.started ? std::max(picture_.scan_time_s, time_s) : time_s;
+    if (!picture_.started) begin_looks();
+    picture_.started = state().started = true;
+    state().time_s = time_s;
+
+    const int taken = sweep(sector, plots, dt_s);
+    state().detection_probability.evaluate();
+    state().clutter.evaluate(state().plots, whole_turn_ ? dt_s : state().radar.period_s,
+                             state().radar.period_s);
+    propagation_.clear(state().plots.size());
+    state().ownership.extend(state().plots.size());
+
+    list_due();
+    predict_existence();
+    coast_by_time();
+    for_each_group(due_, [&](std::span<const int> slots) {
+      predict(slots);
+      find_candidates(slots, true);
+    });
+    state().plots.hide_after(std::numeric_limits<double>::infinity());
+    list_rivals();
+    for_each_group(rivals_, [&](std::span<const int> slots) {
+      predict(slots);
+      find_candidates(slots, false);
+    });
+    state().plots.hide_after(std::numeric_limits<double>::infinity());
+    associate();
+    for_each_group(due_, [&](std::span<const int> slots) { update(slots); });
+
+    confirm_and_delete();
+    delete_duplicates();
+    picture_.number_confirmed();
+    state().clutter.learn(
+        state().plots, state().ownership.clutter_probability(),
+        [&](int slot) { return state().ownership.plot_of(slot); }, state().looks, due_);
+    initiate();
+    report_room();
+    state().clutter.learn_rings(state().plots, state().ownership.free_probability(), dt_s,
+                                whole_turn_ ? 1.0 : dt_s / state().radar.period_s);
+
+    report_owners(std::min(plots.size(), static_cast<std::size_t>(picture_.config.max_plots)));
+    state().ownership.drop_settled(state().plots);
+    state().plots.drop_settled();
+    return {Status::kOk, picture_.plot_track_id, picture_.events,
+            static_cast<int>(plots.size()) - taken};
+  }
+
+ private:
+  static constexpr double kClockPeriods = 10.0;  ///< in which a plot of another time is in error
+  static constexpr double kPointedPeriods = 2.0;
+  static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
+  static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
+
+  /// Calls `f(slots)` for a few tracks at a time, which stay in the cache from stage to stage.
+  template <class Function>
+  void for_each_group(std::span<const int> slots, const Function& function) {
+    for (std::size_t first = 0; first < slots.size(); first += kGroup)
+      function(slots.subspan(first, std::min(kGroup, slots.size() - first)));
+  }
+
+  /// Of the radar at hand.
+  [[nodiscard]] RadarState& state() const noexcept { return picture_.state(); }
+  [[nodiscard]] Look& look_at(const Track& track) const noexcept { return state().look(track); }
+  CandidatePlots& candidates_of(const Track& track) noexcept {
+    return candidates_[static_cast<std::size_t>(track.slot)];
+  }
+
+  /// Moves the beam over a sector, or a whole turn without one, and takes the plots. Returns how
+  /// many are taken.
+  int sweep(const Sector* sector, std::span<const Plot> plots, double dt_s) noexcept {
+    state().own.north_m += dt_s * state().own.vnorth_mps;
+    state().own.east_m += dt_s * state().own.veast_mps;
+    double half_rad = kPi<double>;
+    if (sector != nullptr) {
+      const double width_rad = Beam::width_rad(sector->from_rad, sector->to_rad);
+      state().beam.sweep(sector->from_rad, width_rad, dt_s, state().radar.period_s);
+      half_rad = width_rad / 2;
+    } else {
+      state().beam.turn();
+    }
+    const double middle_rad = state().beam.angle_rad() - half_rad;
+    const int taken = state().plots.add(
+        state().radar, plots, state().time_s,
+        std::max(kClockPeriods * state().radar.period_s, dt_s), [&](const Plot& plot) {
+          return sector == nullptr ? middle_rad : Beam::unwrapped(plot.bearing_rad, middle_rad);
+        });
+    if (sector != nullptr && sector->own && in_range(sector->own->position<double>()))
+      state().own = *sector->own;
+    else if (taken > 0)
+      state().own =
+          plots[static_cast<std::size_t>(state().plots[state().plots.size() - 1].input)].own;
+    return taken;
+  }
+
+  /// Lists the tracks that are due and those that wait. A track is due when the beam has passed its
+  /// gate; where it has a plot in the gate without outliers, when the beam has passed that.
+  void list_due() noexcept {
+    due_.clear();
+    waiting_.clear();
+    arcs_.clear();
+    const double beam_rad = state().beam.angle_rad();
+    for (const int slot : picture_.tracks.slots()) {
+      Track& track = picture_.tracks.at(slot);
+      Look& look = look_at(track);
+      if (whole_turn_) {
+        look.passed_rad = beam_rad - kPi<double>;
+        look.look_rad = beam_rad;
+        if (may_be_seen(track)) due_.push_back(slot);
+        continue;
+      }
+      if (beam_rad < look.look_rad) continue;
+      BeamArc arc = arc_of(track, picture_.config.outlier_variance());
+      if (arc.from_rad > beam_rad) continue;
+      if (arc.to_rad > beam_rad) {
+        const BeamArc usual = arc_of(track, 1.0);
+        if (!state().beam.has_swept(usual) || !has_plot_near(track)) {
+          waiting_.push_back(slot);
+          continue;
+        }
+        arc = usual;
+      }
+      if (state().beam.has_swept(arc) && may_be_seen(track)) {
+        due_.push_back(slot);
+        arcs_.push_back(arc);
+      } else {
+        pass(track, arc);  // a part was left out
+      }
+    }
+    if (!whole_turn_) defer();
+  }
+
+  [[nodiscard]] BeamArc arc_of(const Track& track, double plot_factor) const noexcept {
+    return gate_arc(track, state().look(track).passed_rad, state().time_s,
+                    picture_.gate.threshold(), plot_factor, state().radar, state().own);
+  }
+
+  /// Whether the radar covers the place where a track is now, or has a plot there all the same.
+  [[nodiscard]] bool may_be_seen(const Track& track) const noexcept {
+    return is_covered(track) || has_plot_near(track);
+  }
+
+  /// Whether the radar covers the place where a track is now. A miss outside says nothing.
+  [[nodiscard]] bool is_covered(const Track& track) const noexcept {
+    return state().radar.covers_all() ||
+           state().covers(track.position() + (state().time_s - track.time_s) * track.velocity());
+  }
+
+  [[nodiscard]] bool has_plot_near(const Track& track) const noexcept {
+    bool found = false;
+    for_each_near(track, [&](int) { found = true; });
+    return found;
+  }
+
+  /// Notes that the beam has passed a track.
+  void pass(Track& track, const BeamArc& arc) noexcept {
+    Look& look = look_at(track);
+    look.passed_rad = std::max(arc.centre_rad, state().beam.last_rad(arc.centre_rad) - Beam::kTurn);
+    look.look_rad = next_look_rad(track, arc);
+  }
+
+  /// Has tracks wait that compete for a plot with one that waits, so that association is of both;
+  /// for half of the time that the beam needs to reach their gate again.
+  void defer() noexcept {
+    is_contested_.assign(static_cast<std::size_t>(state().plots.size()), 0);
+    const auto contest = [&](int slot) {
+      for_each_near(picture_.tracks.at(slot),
+                    [&](int plot) { is_contested_[static_cast<std::size_t>(plot)] = 1; });
+    };
+    for (const int slot : waiting_) contest(slot);
+    for (bool changed = !waiting_.empty(); changed;) {
+      changed = false;
+      std::size_t left = 0;
+      for (std::size_t k = 0; k < due_.size(); ++k) {
+        const BeamArc& arc = arcs_[k];
+        const double longest_rad = (Beam::kTurn - (arc.to_rad - arc.from_rad)) / 2;
+        bool waits = false;
+        if (state().beam.angle_rad() < arc.to_rad + longest_rad)
+          for_each_near(picture_.tracks.at(due_[k]), [&](int plot) {
+            waits = waits || is_contested_[static_cast<std::size_t>(plot)] != 0;
+          });
+        if (waits) {
+          contest(due_[k]);
+          waiting_.push_back(due_[k]);
+          changed = true;
+        } else {
+          arcs_[left] = arc;
+          due_[left++] = due_[k];
+        }
+      }
+      due_.resize(left);
+      arcs_.resize(left);
+    }
+    for (std::size_t k = 0; k < due_.size(); ++k) pass(picture_.tracks.at(due_[k]), arcs_[k]);
+  }
+
+  /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
+  template <class Function>
+  void for_each_near(const Track& track, const Function& function) const noexcept {
+    const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
+    for_each_in_reach(now, [&](int index) {
+      const ScanPlot& plot = state().plots[index];
+      const Gaussian<4> then = at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
+      if (innovation_squared(then, plot.position.mean, plot.position.covariance) <=
+          picture_.gate.threshold())
+        function(index);
+    });
+  }
+
+  /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
+  [[nodiscard]] double next_look_rad(const Track& track, const BeamArc& arc) const noexcept {
+    const double range_m = (track.position() - state().position()).norm();
+    const double way_m = kPointedPeriods * state().radar.max_speed_mps * state().radar.period_s;
+    const double way_rad = way_m < range_m ? std::asin(way_m / range_m) : kPi<double>;
+    const double wide_rad = arc.to_rad - arc.from_rad + way_rad;
+    return arc.centre_rad + Beam::kTurn - std::min(wide_rad, kPi<double>);
+  }
+
+  /// Has the tracks that were designated before the first scan begin with it.
+  void begin_looks() noexcept {
+    for (const int slot : picture_.tracks.slots()) {
+      picture_.tracks.at(slot).looked_s = picture_.scan_time_s;
+      for (RadarState& radar : picture_.radars)
+        radar.look(picture_.tracks.at(slot)).looked_s = picture_.scan_time_s;
+    }
+  }
+
+  /// Existence and visibility of the tracks that are due, as of now.
+  void predict_existence() noexcept {
+    double of_s = 0.0;
+    ExistencePrediction prediction(picture_.config, of_s);
+    const auto over = [&](double dt_s) -> const ExistencePrediction& {
+      if (dt_s != of_s) prediction = ExistencePrediction(picture_.config, of_s = dt_s);
+      return prediction;
+    };
+    const double now_s = state().time_s;
+    for (const int slot : due_) {
+      Track& track = picture_.tracks.at(slot);
+      if (!is_covered(track)) continue;
+      Look& look = look_at(track);
+      look.visibility = over(std::max(now_s - look.looked_s, 0.0)).visibility(look.visibility);
+      track.existence = over(std::max(now_s - track.looked_s, 0.0)).existence(track.existence);
+      look.looked_s = now_s;
+      track.looked_s = std::max(track.looked_s, now_s);
+    }
+  }
+
+  /// Lets tracks coast by time that the beam has not passed for long; returns none that is due.
+  void coast_by_time() noexcept {
+    touched_.assign(touched_.size(), 0);
+    for (const int slot : due_) touched_[static_cast<std::size_t>(slot)] = 1;
+    const double period_s = picture_.longest_period_s();
+    for (const int slot : picture_.tracks.slots()) {
+      Track& track = picture_.tracks.at(slot);
+      const double silent_s = picture_.scan_time_s - track.looked_s;
+      if (!(silent_s > kSilentPeriods * period_s) || picture_.is_awaited(track)) continue;
+      const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
+      if (!(picture_.scan_time_s < track.seen_until_s))
+        for (double k = 0.0; k < periods; ++k) track.count(false);
+      track.looked_s += periods * period_s;
+      const ExistencePrediction prediction(picture_.config, periods * period_s);
+      track.existence = prediction.existence(track.existence);
+      for (RadarState& radar : picture_.radars) {
+        Look& look = radar.look(track);
+        look.visibility = prediction.visibility(look.visibility);
+        look.looked_s = std::max(look.looked_s, track.looked_s);
+        look.misses += static_cast<int>(periods);
+      }
+      PredictionStep<Estimator> step{&picture_.estimator_at(slot),
+                                     picture_.scan_time_s - track.time_s};
+      picture_.steps.predict({&step, 1});
+      touched_[static_cast<std::size_t>(slot)] = 1;
+      track.nis = std::numeric_limits<double>::quiet_NaN();
+      if (step.status != Status::kOk) continue;
+      track.time_s = picture_.scan_time_s;
+      track.kinematics = step.kinematics;
+    }
+  }
+
+  /// Has the plots wait that may be of a track which waits, or ahead of the beam, and lists the
+  /// tracks that wait and have a candidate in common with one that is due.
+  void list_rivals() noexcept {
+    rivals_.clear();
+    if (!waiting_.empty()) {
+      is_candidate_.assign(static_cast<std::size_t>(state().plots.size()), 0);
+      for (const int slot : due_)
+        for (const CandidatePlot& plot : candidates_of(picture_.tracks.at(slot)))
+          is_candidate_[static_cast<std::size_t>(plot.plot)] = 1;
+    }
+    for (const int slot : waiting_) {
+      const Track& track = picture_.tracks.at(slot);
+      const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
+      bool is_rival = false;
+      for_each_in_reach(now, [&](int plot) {
+        state().plots.keep(plot);
+        is_rival = is_rival || is_candidate_[static_cast<std::size_t>(plot)] != 0;
+      });
+      if (is_rival) rivals_.push_back(slot);
+    }
+    for (int plot = 0; plot < state().plots.size(); ++plot)
+      if (std::max(state().plots[plot].beam_rad, state().plots[plot].wait_until_rad) >
+          state().beam.angle_rad())
+        state().plots.keep(plot);
+  }
+
+  /// Leaves a track the plots of one turn.
+  ///
+  /// Where the plots of a turn have one time, as in recordings, and the gate of a track is on both
+  /// sides of where a turn ends, plots of two turns are in it. Those half a period after the first
+  /// wait for the next turn.
+  void choose_turn(const Track& track) noexcept {
+    state().plots.hide_after(std::numeric_limits<double>::infinity());
+    const double half_period_s = 0.5 * state().radar.period_s;
+    if (!(state().time_s - state().plots.earliest_s() > half_period_s)) return;
+    const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
+    double first_s = state().time_s;
+    for_each_in_reach(now,
+                      [&](int plot) { first_s = std::min(first_s, state().plots[plot].time_s); });
+    for_each_in_reach(now, [&](int plot) {
+      if (state().plots[plot].time_s > first_s + half_period_s)
+        state().plots.keep_until(plot, state().beam.angle_rad() + Beam::kTurn);
+    });
+    state().plots.hide_after(first_s + half_period_s);
+  }
+
+  /// Calls `f(plot)` for the plots that may be in the gate of a belief, about.
+  template <class Function>
+  void for_each_in_reach(const Gaussian<4>& now, const Function& function) const noexcept {
+    state().plots.for_each_near(
+        {now.mean[0], now.mean[2]}, [&](double plot_m2) { return gate_reach_m(now, plot_m2); },
+        function);
+  }
+
+  /// How far a plot of such a variance may be from a belief and in its gate, about.
+  [[nodiscard]] double gate_reach_m(const Gaussian<4>& belief, double plot_m2) const noexcept {
+    const double own_m2 = belief.covariance(0, 0) + belief.covariance(2, 2);
+    return std::sqrt(picture_.gate.threshold() *
+                     (own_m2 + picture_.config.outlier_variance() * plot_m2));
+  }
+
+  /// Predicts tracks, each to the time of its plot.
+  void predict(std::span<const int> slots) noexcept {
+    std::array<PredictionStep<Estimator>, kGroup> steps;
+    std::array<Track*, kGroup> track_of;
+    std::array<double, kGroup> time_of;
+    std::size_t count = 0;
+    for (const int slot : slots) {
+      const Track& track = picture_.tracks.at(slot);
+      if (!whole_turn_) choose_turn(track);
+      const double time_s = expected_time_s(track, state().plots, state().radar.max_speed_mps);
+      if (!(time_s > track.time_s)) continue;
+      steps[count] = {&picture_.estimator_at(slot), time_s - track.time_s};
+      track_of[count] = &picture_.tracks.at(slot);
+      time_of[count++] = time_s;
+    }
+    picture_.steps.predict({steps.data(), count});
+    for (std::size_t k = 0; k < count; ++k) {
+      if (steps[k].status != Status::kOk) continue;
+      track_of[k]->time_s = time_of[k];
+      track_of[k]->kinematics = steps[k].kinematics;
+    }
+  }
+
+  /// Gates of tracks, and the likelihoods of the plots inside.
+  void find_candidates(std::span<const int> slots, bool due) noexcept {
+    for (const int slot : slots) {
+      const Track& track = picture_.tracks.at(slot);
+      CandidatePlots& candidates = candidates_of(track);
+      if (!whole_turn_) choose_turn(track);
+      modes_.read(picture_.estimator_at(slot));
+      const TimeAlignment alignment(
+          track, state().radar.period_s,
+          picture_.maneuver_m2s3(track, state().plots.greatest_lag_s(track.time_s)));
+      candidates.choose(picture_.gate.validate(track, modes_, alignment, state().plots),
+                        look_at(track).learned, modes_, picture_.config.outlier_probability,
+                        state().clutter, state().plots);
+      // What a track that waits may own as an outlier is not known before it is due.
+      if (!due)
+        candidates.keep_if([&](const CandidatePlot& plot) {
+          return innovation_squared(track.kinematics, plot.z, plot.nominal_r) <=
+                 picture_.gate.threshold();
+        });
+      candidates.thin(state().ownership.free_probability());
+      if (picture_.config.association == Association::kProbabilistic)
+        propagation_.claim(track, detection_of(track), candidates);
+    }
+  }
+
+  /// Assigns plots to tracks, where each may have one at most.
+  void associate() noexcept {
+    competing_.assign(due_.begin(), due_.end());
+    competing_.insert(competing_.end(), rivals_.begin(), rivals_.end());
+    if (picture_.config.association == Association::kProbabilistic)
+      propagation_.propagate(competing_);
+    else
+      assignment_.assign(state().detection_probability, state().looks, picture_.tracks, competing_,
+                         candidates_, state().plots.size());
+  }
+
+  [[nodiscard]] Detection detection_of(const Track& track) const noexcept {
+    return state().detection_probability.of(state().look(track).visibility);
+  }
+
+  [[nodiscard]] AssociationWeights weights_of(const Track& track,
+                                              const Detection& detection) noexcept {
+    return picture_.config.association == Association::kProbabilistic
+               ? propagation_.weights(track, detection, candidates_of(track))
+               : assignment_.weights(track, detection, candidates_of(track));
+  }
+
+  /// Updates estimators, existence and visibility of tracks, and adds to the ownership of plots.
+  void update(std::span<const int> slots) noexcept {
+    std::array<AssociationWeights, kGroup> weights;
+    std::array<UpdateStep<Estimator>, kGroup> steps;
+    std::array<const UpdateStep<Estimator>*, kGroup> step_of{};  ///< null of a track without plots
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      const Track& track = picture_.tracks.at(slots[k]);
+      weights[k] = weights_of(track, detection_of(track));
+      readings_[k].list(candidates_of(track), weights[k], picture_.config.outlier_probability);
+      if (readings_[k].empty()) continue;
+      steps[count] = {&picture_.estimator_at(slots[k]), readings_[k].fixes(), weights[k].none,
+                      readings_[k].share()};
+      step_of[k] = &steps[count++];
+    }
+    picture_.steps.update({steps.data(), count});
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      Track& track = picture_.tracks.at(slots[k]);
+      const Detection detection = detection_of(track);
+      const AssociationProbabilities probabilities = readings_[k].probabilities();
+      note_best_plot(track, probabilities);
+      ScanLikelihood scan{weights[k].none, weights[k].none, weights[k].assigned};
+      if (step_of[k] != nullptr) {
+        track.kinematics = step_of[k]->kinematics;
+        if (step_of[k]->total > 0.0) scan.total = step_of[k]->total;
+        note_errors(track, probabilities);
+      }
+      const bool may_miss = !picture_.is_awaited(track) && is_covered(track);
+      if (scan.total > 0.0 && (may_miss || !readings_[k].empty()))
+        update_existence(picture_.config, detection, scan, track, look_at(track).visibility);
+      state().ownership.add(track, candidates_of(track), weights[k], probabilities);
+      const bool seen = probabilities.any > 0.5;
+      if (!seen && !may_miss) continue;
+      const bool shared = !seen && seen_alone(detection_of(track), candidates_of(track)) > 0.5;
+      note_look(track, seen, shared);
+      if (!shared && is_sure(track)) state().detection_probability.learn(probabilities.any);
+    }
+  }
+
+  /// Counts a look of the radar at hand, unless it is a miss of a track that another sensor sees.
+  void note_look(Track& track, bool seen, bool shared) noexcept {
+    constexpr double kPeriods = 0.9;  // before the same radar looks again
+    const double now_s = state().time_s;
+    Look& look = look_at(track);
+    look.misses = seen ? 0 : look.misses + 1;
+    if (seen || !(now_s < track.seen_until_s)) track.count(seen, shared);
+    if (seen) track.looked_s = std::max(track.looked_s, now_s);
+    if (seen && picture_.radars.size() > 1)
+      track.seen_until_s = std::max(track.seen_until_s, now_s + kPeriods * state().radar.period_s);
+  }
+
+  /// Whether a track is of a target that is there, so that its misses are those of the radar.
+  [[nodiscard]] bool is_sure(const Track& track) const noexcept {
+    constexpr int kScans = 8, kMisses = 6;
+    return track.confirmed() && track.scans > kScans && state().look(track).misses < kMisses;
+  }
+
+  /// Notes what a track keeps of its most probable plot, before the track takes the updated belief.
+  void note_best_plot(Track& track, const AssociationProbabilities& probabilities) noexcept {
+    track.nis = std::numeric_limits<double>::quiet_NaN();
+    if (probabilities.best < 0) return;
+    const CandidatePlot& best = candidates_of(track)[std::size_t(probabilities.best)];
+    track.nis = innovation_squared(track.kinematics, best.z, best.nominal_r);
+    track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
+  }
+
+  /// Notes what stays of the errors of its most probable plot, and learns from it.
+  void note_errors(Track& track, const AssociationProbabilities& probabilities) noexcept {
+    if (probabilities.best < 0) return;
+    const auto at = static_cast<std::size_t>(probabilities.best);
+    const CandidatePlot& best = candidates_of(track)[at];
+    PersistentErrors& errors = state().persistent_errors;
+    constexpr double kCertain = 0.7;
+    if (is_sure(track) && probabilities.of_candidate[at] > kCertain) errors.learn(track.nis);
+    const ConvertedErrors& of_plot = state().plots[best.plot].errors;
+    const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
+    const Mat<double, 2, 2> position_m2 = position_in(track.kinematics).covariance;
+    track.stays_m2 = errors.share() * (best.nominal_r + position_m2) +
+                     bent_m2(track.position() - antenna_m, position_m2);
+  }
+
+  void confirm_and_delete() noexcept {
+    const double shown_misses =
+        state().detection_probability.likely_misses(picture_.config.shown_probability);
+    picture_.tracks.remove_if([&](Track& track) {
+      if (touched_[static_cast<std::size_t>(track.slot)] == 0) return false;
+      if (confirm_or_coast(picture_.config, state().radar, shown_misses, track))
+        picture_.announce(TrackEvent::kCoasting, track);
+      LossReason reason = reason_to_delete(picture_.config, state().radar, track);
+      if (reason == LossReason::kUncertain && picture_.scan_time_s < track.seen_until_s)
+        reason = LossReason::kNone;  // its vessel will report
+      if (reason != LossReason::kNone) picture_.announce(TrackEvent::kLost, track, reason);
+      return reason != LossReason::kNone;
+    });
+    std::erase_if(due_, [&](int slot) { return !picture_.tracks.in_use(slot); });
+  }
+
+  void delete_duplicates() noexcept {
+    for (const int slot : duplicates_.find(picture_.tracks, due_, picture_.longest_period_s())) {
+      picture_.announce(TrackEvent::kLost, picture_.tracks.at(slot), LossReason::kDuplicate);
+      picture_.tracks.vacate(slot);
+    }
+    picture_.tracks.close_gaps();
+    std::erase_if(due_, [&](int slot) { return !picture_.tracks.in_use(slot); });
+  }
+
+  /// Starts tentative tracks.
+  void initiate() noexcept {
+    picture_.newest_before = picture_.next_tentative_id + 1;
+    picture_.room.reset();
+    state().initiation.initiate(
+        state().radar, state().plots, state().ownership, state().clutter,
+        state().detection_probability.value(), state().beam.angle_rad(), whole_turn_,
+        [&](double existence) { return picture_.room.has_room_for(existence, picture_.tracks); },
+        [&](const TrackStart& start) {
+          Track* track = picture_.open(start);
+          if (track == nullptr) return;
+          track->history = 3u;
+          Look& look = look_at(*track);
+          look.passed_rad = look.look_rad = start.beam_rad;
+          look.learned = start.learned;
+        });
+    picture_.tracks.close_gaps();
+    for (const int slot : picture_.tracks.slots())
+      if (picture_.is_new(picture_.tracks.at(slot)))
+        picture_.announce(TrackEvent::kStarted, picture_.tracks.at(slot));
+    picture_.newest_before = picture_.next_tentative_id + 1;
+  }
+
+  /// Reports whose the plots are, by the numbers that the tracks have now.
+  void report_owners(std::size_t count) noexcept {
+    picture_.plot_track_id.assign(count, 0);
+    for (int plot = 0; plot < state().plots.size(); ++plot) {
+      const PlotOwnership::Owner& owner = state().ownership.owner(plot);
+      if (state().plots[plot].input < 0 || owner.slot < 0 || !picture_.tracks.in_use(owner.slot))
+        continue;
+      const Track& track = picture_.tracks.at(owner.slot);
+      if (track.hushed) continue;
+      if (track.id == owner.track_id || track.tentative_id == owner.track_id)
+        picture_.plot_track_id[static_cast<std::size_t>(state().plots[plot].input)] = track.id;
+    }
+  }
+
+  /// Reports that `max_tracks` is reached, once until there is room again.
+  void report_room() noexcept {
+    if (picture_.tracks.full() && !picture_.full &&
+        picture_.events.size() < picture_.events.capacity())
+      picture_.events.push_back({TrackEvent::kFull, 0, 0, picture_.scan_time_s});
+    picture_.full = picture_.tracks.full();
+  }
+
+  Picture<Estimator, Steps>& picture_;
+  bool whole_turn_ = true;      ///< of this call
+  std::vector<int> due_;        ///< slots of the tracks whose gate the beam has passed
+  std::vector<int> waiting_;    ///< and of those whose gate it is in
+  std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
+  std::vector<int> competing_;  ///< both
+  std::vector<char> touched_;   ///< by slot: whether this call has counted for the track
+  std::vector<BeamArc> arcs_;   ///< of the tracks that are due
+  std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
+  std::vector<char> is_candidate_;  ///< by plot: of a track that is due
+
+  ModePositions modes_;                     ///< of the track at hand
+  std::vector<CandidatePlots> candidates_;  ///< by slot
+  BeliefPropagation propagation_;
+  PlotAssignment assignment_;
+  std::array<TrackReadings, kGroup> readings_;  ///< of the tracks at hand
+  Duplicates duplicates_;
+};
+
+}  // namespace wakeline
