@@ -382,8 +382,10 @@ AsterixRecords)doc")
 
   py::class_<SensorClock>(m, "SensorClock", R"doc(Times of a sensor on the receiver's clock.
 
-Clocks of sensors are often wrong and seldom drift. A time at most `limit_s` from that of reception is right. Otherwise the
-difference is held as the offset of the sensor's clock, until a time is again more than `limit_s` from where the offset puts it.
+Clocks of sensors are often wrong and seldom drift. A time at most `limit_s` from that of reception is right; the difference of
+a first time that is not is held as the offset of the sensor's clock. It is found again when all times have been more than `limit_s`
+from where the offset puts them for 10 s. Until then such a time is that of data that come late, where it is before the
+reception, and else that of reception.
 
 Parameters
 ----------

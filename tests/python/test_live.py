@@ -20,8 +20,8 @@ from wakeline.live.lines import LineAssembly
 from wakeline.live.nmea import AisMessage, NmeaDecoder
 from wakeline.live.own_ship import Missing, OwnShipSources, SourceKey
 from wakeline.live.problems import Problems
-from wakeline.live.radar_feed import SensorClock
 from wakeline.tracking.settings import SettingsError
+from wakeline.wire import SensorClock
 
 HALO = Path(__file__).parents[1] / "data" / "halo_udp10110" / "udp10110.csv"
 JOYRIDE = {"name": "A", "range_std_m": 6.0, "bearing_std_deg": 0.3, "extent_std_m": 6.5}
@@ -98,6 +98,79 @@ def test_a_session_fed_twice_gives_the_same_lines():
         return out
 
     assert lines() == lines() != []
+
+
+def assert_same_tracks(one, other):
+    for session in (one, other):
+        session.correct()
+    assert len(one.tracker.tracks())
+    assert repr(one.tracker.tracks()) == repr(other.tracker.tracks())
+
+
+@pytest.mark.parametrize("most_turns", [0.3, 2.0])
+def test_scans_that_come_up_to_two_turns_late_give_the_tracks_of_time(most_turns):
+    """Own ship moves, and its readings come in time."""
+    scans, own = {}, []
+    for t, line in joyride_lines(80):
+        (own if "own" in line else scans.setdefault(t, [])).append((t, line))
+    rng = np.random.default_rng(3)
+    in_order, late, lines = joyride_session(), joyride_session(), []
+    for session, delay_s in ((in_order, 0.0), (late, 2.5 * most_turns)):
+        arrivals = [(t, json.dumps(line)) for t, line in own]
+        for t, each in scans.items():
+            text = "\n".join(json.dumps(line) for _, line in each)
+            arrivals.append((t + rng.uniform(0.0, delay_s), text))
+        lines.append(written(session))
+        for t, text in sorted(arrivals, key=lambda one: one[0]):
+            session.feed(t, "x", text.encode())
+    assert_same_tracks(late, in_order)
+    assert late.status()["late"]["too_late_inputs"] == 0
+    assert (late.status()["late"]["late_inputs"] > 0) == (most_turns > 1.0)
+    assert len(lines[1]) <= 2 * len(lines[0])  # corrections report only what they have changed
+
+
+def test_what_a_held_up_connection_delivers_at_once_is_put_in_its_place():
+    """Two radars ashore; the second comes over a line that stops for 8 s."""
+    sessions = [wl.live.Session({"radar": two_radars()}) for _ in range(2)]
+    for session, held_up in zip(sessions, (False, True), strict=True):
+        waiting = []
+        for k in range(60):
+            t = 2.0 * k
+            for name in "AB":
+                text = "\n".join(map(json.dumps, turn_of(name, t)))
+                if held_up and name == "B" and 20 <= k < 24:
+                    waiting.append(text)
+                    continue
+                for each in [*waiting, text] if name == "B" else [text]:
+                    session.feed(t, name, each.encode())
+                waiting = [] if name == "B" else waiting
+    assert_same_tracks(*sessions)
+    assert sessions[1].status()["late"]["late_inputs"] == 4
+
+
+def two_radars():
+    return [JOYRIDE | {"name": name, "position_deg": [54.0, 10.0]} for name in "AB"]
+
+
+def turn_of(radar, t):
+    """Two vessels in a turn of a radar, and its mark."""
+    for k, range_m in enumerate((2000.0 - 5.0 * t, 1500.0 + 3.0 * t)):
+        yield {"radar": radar, "time_s": t, "range_m": range_m, "bearing_rad": 0.7 + 2.0 * k}
+    yield {"radar": radar, "sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+
+
+def test_data_from_before_the_window_are_counted_and_change_nothing():
+    one, other = (wl.live.Session({"radar": two_radars()}) for _ in range(2))
+    for k in range(20):
+        t = 1000.0 + 2.0 * k
+        for session in (one, other):
+            for line in turn_of("A", t):
+                session.feed(t, "A", json.dumps(line).encode())
+    for line in turn_of("A", 1020.0):  # 18 s late
+        other.feed(t, "A", json.dumps(line).encode())
+    assert_same_tracks(one, other)
+    assert other.status()["late"]["too_late_inputs"] == 1
+    assert "wakeline_too_late_inputs_total 1" in other.metrics()
 
 
 def test_bearings_from_the_bow_give_the_track_of_true_bearings():
@@ -316,7 +389,7 @@ def test_position_is_that_of_the_time_and_of_the_reference_point():
 @pytest.mark.parametrize("off_s", [0.4, 3 * 3600.0, -86400.0 * 1024 * 7, 86399.0])
 def test_a_clock_that_is_off_is_held(off_s):
     clock = SensorClock()
-    times = [clock.time_s(t + off_s, t + 0.1) for t in np.arange(1.7e9, 1.7e9 + 30.0)]
+    times = [clock(t + off_s, t + 0.1) for t in np.arange(1.7e9, 1.7e9 + 30.0)]
     np.testing.assert_allclose(np.diff(times), 1.0, atol=1e-6)
     assert abs(times[-1] - (1.7e9 + 29.0)) < 5.0
 
@@ -325,7 +398,7 @@ def test_a_time_of_day_is_on_the_day_nearest_to_its_arrival():
     midnight = 86400.0 * 20_000
     clock = SensorClock()
     for t in np.arange(midnight - 3.0, midnight + 3.0, 0.25):
-        assert clock.of_day_s(t % 86400.0, t + 0.3) == pytest.approx(t)
+        assert clock(t % 86400.0, t + 0.3) == pytest.approx(t)
 
 
 # ------------------------------------------------------------------ lines and AIS

@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from wakeline import wire
 
 from .problems import Problems
-from .radar_feed import PlotRow, Sector, SensorClock
+from .radar_feed import PlotRow, Sector
 
 CATEGORIES = (10, 34, 48)
 _PLOT, _NORTH, _SECTOR = 0, 1, 2
 _TURN_RAD = 2.0 * math.pi
 _SAME_RAD = 1e-6
+_LATE_S = 2.0  # a mark from so much before the last one has been overtaken by it
 
 
 class AsterixFeed:
@@ -29,7 +30,7 @@ class AsterixFeed:
     """
 
     def __init__(self) -> None:
-        self.clock = SensorClock()
+        self.clock = wire.SensorClock()
         self.test_plots = 0
         self._decoder = wire.AsterixDecoder()
         self._source: int | None = None
@@ -56,7 +57,7 @@ class AsterixFeed:
             if source != self._source:
                 problems.add("other radar", f"source {divmod(source, 256)} at this input")
                 continue
-            when_s = self.clock.time_s(at_s, time_s) if math.isfinite(at_s) else time_s
+            when_s = self.clock(at_s, time_s)
             if kind == _PLOT:
                 if is_test:
                     self.test_plots += 1
@@ -70,6 +71,8 @@ class AsterixFeed:
     def _pass_to(self, azimuth_rad: float, time_s: float) -> Iterator[Sector]:
         """The sector from the last mark; a whole turn where the marks are those of north."""
         from_rad, from_s = self._edge_rad, self._edge_s
+        if 0.0 < from_s - time_s < _LATE_S:
+            return
         width_rad = (azimuth_rad - from_rad) % _TURN_RAD
         if width_rad < _SAME_RAD or width_rad > _TURN_RAD - _SAME_RAD:
             if time_s - from_s < 0.2:  # north and the sector that begins there

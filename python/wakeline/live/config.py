@@ -213,6 +213,9 @@ class SessionConfig:
         first radar ashore.
     status_s : float
         Interval of the status line.
+    window_s : float
+        Data of radars that are at most so much older than the newest are put in their place; 0:
+        two turns of the slowest radar, and at least 10 s.
     record : str
         File that the session is recorded to; empty: none.
     segment_mb, most_mb : float
@@ -224,12 +227,17 @@ class SessionConfig:
         (), "Latitude and longitude of north 0, east 0; empty: the first position. [degrees]"
     )
     status_s: float = _key(1.0, "Interval of the status line; 0: none. [s]")
+    window_s: float = _key(
+        0.0, "Data at most so late are put in their place; 0: two turns, at least 10 s. [s]"
+    )
     record: str = _key("", "File that the session is recorded to; empty: none.")
     segment_mb: float = _key(256.0, "A new segment of the record begins at this size. [MB]")
     most_mb: float = _key(4096.0, "Size of all segments before the oldest is removed. [MB]")
 
     def __post_init__(self) -> None:
         _check_place("origin_deg", self.origin_deg)
+        if not 0.0 <= self.window_s <= 3600.0:
+            raise SettingsError(f"window_s must be from 0 to 3600, got {self.window_s}")
         if not 0.0 < self.segment_mb <= self.most_mb:
             raise SettingsError(
                 f"segment_mb must be above 0 and at most most_mb, got {self.segment_mb}"

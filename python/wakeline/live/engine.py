@@ -15,6 +15,8 @@ from wakeline.tracking import MODE_NAMES
 from wakeline.tracking.settings import Settings
 
 _SILENT_TURNS = 2.5  # a sector that is a little late still comes before the miss
+_WINDOW_S = 10.0  # of late data, at least: what clocks of sensors may be off, both ways
+_ROOM = {"max_inputs": 20_000, "max_plots": 100_000}
 
 
 @dataclass(frozen=True)
@@ -80,30 +82,49 @@ class LiveTrack:
 
 
 class TrackEngine:
-    """The tracker of all radars of a session.
+    """The tracker of all radars of a session, which puts late data in their place.
 
     Parameters
     ----------
     radars : sequence of Radar
     settings : Settings
         Of tracker and motion models.
-
-    Attributes
-    ----------
-    late_sectors : int
-        Sectors that came too late to be used.
+    window_s : float
+        What is at most so late is put in its place; 0: two turns of the slowest radar, and at
+        least 10 s.
     """
 
-    def __init__(self, radars: Sequence[wl.Radar], settings: Settings) -> None:
+    def __init__(
+        self, radars: Sequence[wl.Radar], settings: Settings, window_s: float = 0.0
+    ) -> None:
         self.radars = list(radars)
-        self.late_sectors = 0
-        self._tracker = settings.tracker_of(self.radars)
+        window_s = window_s or max(_WINDOW_S, 2.0 * max(one.period_s for one in radars))
+        self._tracker = settings.window_of(self.radars, window_s=window_s, **_ROOM)
         self._last_s = [-math.inf] * len(self.radars)
+        self._correct_s = self._heard_s = -math.inf
+        self._late_s = 0.0
+        self._known = np.zeros(0, dtype=np.int64), np.zeros((0, 4))
 
     @property
     def time_s(self) -> float:
         """The latest time of any sector; 0 before the first."""
         return self._tracker.time_s
+
+    @property
+    def late(self) -> dict[str, float]:
+        """The window of late data, s, how many came late and too late, and corrections."""
+        window = self._tracker
+        return {
+            "window_s": window.window_s,
+            "late_inputs": window.late_inputs,
+            "too_late_inputs": window.too_late_inputs,
+            "corrections": window.corrections,
+        }
+
+    def correct(self) -> list[dict[str, Any]]:
+        """Put all late data in the picture; the events of tracks."""
+        self._correct_s = self.time_s
+        return _events(self._tracker.correct())
 
     def sector(
         self,
@@ -118,11 +139,7 @@ class TrackEngine:
         covariance: np.ndarray | None = None,
     ) -> list[dict[str, Any]]:
         """Process a part of a radar's turn; the events of tracks."""
-        time_s = max(time_s, self._last_s[radar])
         events = list(self._catch_up(radar, time_s))
-        if time_s < self.time_s - self.radars[radar].period_s:
-            self.late_sectors += 1
-            return events
         report = self._tracker.sector(
             radar=radar,
             from_rad=from_rad,
@@ -134,16 +151,34 @@ class TrackEngine:
             own=own,
             covariance=covariance,
         )
-        self._last_s[radar] = time_s
+        self._last_s[radar] = max(time_s, self._last_s[radar])
         return events + _events(report.events)
 
+    def note_lateness(self, time_s: float, received_s: float) -> None:
+        """Take note of how long after its time a sector has come; half of it after a minute."""
+        passed_s = max(received_s - self._heard_s, 0.0)
+        self._late_s = max(received_s - time_s, self._late_s * 0.5 ** (passed_s / 60.0))
+        self._heard_s = received_s
+
     def coast(self, time_s: float) -> list[dict[str, Any]]:
-        """Let time pass for radars that are silent for more than two periods."""
+        """Let time pass where all radars are silent for more than two periods.
+
+        Where data come late, they are silent only when these would have come. A picture that has
+        waited for a window is corrected.
+        """
         events: list[dict[str, Any]] = []
-        for radar, last_s in enumerate(self._last_s):
-            if self.time_s > 0.0 and last_s < time_s - _SILENT_TURNS * self.radars[radar].period_s:
-                events += self._catch_up(radar, time_s)
-                events += self._pass(radar, max(time_s, last_s))
+        if self._tracker.is_correct:
+            self._correct_s = self.time_s
+        elif time_s - self._correct_s > self._tracker.window_s:
+            events += self.correct()
+        heard = [k for k, last_s in enumerate(self._last_s) if last_s > -math.inf]
+        if not heard:
+            return events
+        fastest = min(heard, key=lambda k: self.radars[k].period_s)
+        wait_s = _SILENT_TURNS * self.radars[fastest].period_s
+        if self.time_s < time_s - wait_s - min(self._late_s, self._tracker.window_s):
+            events += self._catch_up(fastest, time_s)
+            events += self._pass(fastest, time_s)
         return events
 
     def _catch_up(self, radar: int, time_s: float) -> Iterator[dict[str, Any]]:
@@ -155,30 +190,32 @@ class TrackEngine:
         report = self._tracker.sector(
             radar=radar, from_rad=0.0, to_rad=0.0, time_s=time_s, range_m=[], bearing_rad=[]
         )
-        self._last_s[radar] = time_s
         return _events(report.events)
 
     def tracks(self, time_s: float | None = None) -> list[LiveTrack]:
         """All shown tracks, at a time or at that of the last sector."""
-        return list(self._rows(self._tracker.tracks(time_s=time_s)))
+        return list(self._rows(self._tracker.tracks(time_s=time_s, correct=False)))
 
-    def updated(self, seen: dict[int, tuple[int, int]]) -> tuple[list[LiveTrack], set[int]]:
-        """Tracks whose hits or misses are not those in `seen`, which is brought up to date.
-
-        With them the numbers of all shown tracks.
-        """
-        table = self._tracker.tracks()
-        ids = table.track_id.tolist()
-        now = list(zip(table.hits.tolist(), table.misses.tolist(), strict=True))
-        rows = [k for k, one in enumerate(ids) if seen.get(one) != now[k]]
-        seen.update((ids[k], now[k]) for k in rows)
-        return list(self._rows(table, rows)), set(ids)
+    def updated(self) -> tuple[list[LiveTrack], list[int]]:
+        """Tracks that were updated or corrected since the last call, and numbers that are gone."""
+        table = self._tracker.tracks(correct=False)
+        ids = np.array(table.track_id)
+        update = np.column_stack([table.hits, table.misses, table.nis, table.existence])
+        known_ids, known = self._known
+        rows = np.arange(len(ids))
+        if len(known_ids):
+            place = np.searchsorted(known_ids, ids).clip(max=len(known_ids) - 1)
+            same = ((known[place] == update) | np.isnan(update)).all(axis=1)
+            rows = rows[~(same & (known_ids[place] == ids))]
+        order = np.argsort(ids)
+        self._known = ids[order], update[order]
+        return list(self._rows(table, rows)), np.setdiff1d(known_ids, ids).tolist()
 
     def _rows(
-        self, table: wl.track.TrackTable, rows: Sequence[int] | None = None
+        self, table: wl.track.TrackTable, rows: np.ndarray | None = None
     ) -> Iterator[LiveTrack]:
         """Tracks of a table, or of some of its rows."""
-        which = np.arange(len(table)) if rows is None else np.array(rows, dtype=np.int64)
+        which = np.arange(len(table)) if rows is None else rows
         status, name = table.status, table.name
         columns = zip(
             table.track_id[which].tolist(),

@@ -47,6 +47,9 @@ def metrics_of(status: Mapping[str, Any]) -> str:
             )
     for key in ("tracks", "ais_vessels"):
         samples[f"wakeline_{key}"] = [f"wakeline_{key} {status[key]}"]
+    for key in ("late_inputs", "too_late_inputs", "corrections"):
+        metric = f"wakeline_{key}_total"
+        samples[metric] = [f"{metric} {status['late'][key]}"]
     samples["wakeline_frozen"] = [f"wakeline_frozen {int(bool(status['frozen']))}"]
     return "".join(f"{line}\n" for metric in samples for line in _family(metric, samples[metric]))
 

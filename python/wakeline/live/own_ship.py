@@ -358,7 +358,7 @@ class OwnShipSources:
             t0, t1 = source.time_s[before], source.time_s[after]
             share = (time_s - t0) / (t1 - t0)
             return tuple(a + share * (b - a) for a, b in zip(now[:2], then[:2], strict=True))
-        last = len(position.time_s) - 1
+        last = position.around(time_s)[0]  # the latest until then
         first = last
         while first > 0 and position.time_s[last] - position.time_s[first] < 2.0:
             first -= 1

@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wakeline.wire import SensorClock
+
 _TAU = 2.0 * math.pi
-_CLOCK_S = 5.0  # a sensor's clock that is farther off is not trusted
-_DISAGREE = 20  # messages in a row before the offset of a clock is found again
-_DAY_S = 86400.0
 _MOST_WAITING = 20_000  # plots
 
 
@@ -32,47 +31,6 @@ class Sector(NamedTuple):
     to_rad: float
     time_s: float
     plots: list[PlotRow]
-
-
-@dataclass
-class SensorClock:
-    """The clock of a sensor against that of the session.
-
-    Clocks of sensors are often wrong and seldom drift: one that is off by more than 5 s is
-    corrected by its first offset, until 20 messages in a row disagree with that by 5 s.
-
-    Attributes
-    ----------
-    offset_s : float
-        Added to the sensor's times.
-    sets : int
-        How often the offset was found.
-    """
-
-    offset_s: float = 0.0
-    sets: int = 0
-    _astray: int = 0
-
-    def time_s(self, sensor_s: float, received_s: float) -> float:
-        """The session's time of a time in UTC seconds."""
-        off_s = received_s - (sensor_s + self.offset_s)
-        if abs(off_s) <= _CLOCK_S:
-            self._astray = 0
-        else:
-            self._astray += 1
-            if self.sets == 0 or self._astray >= _DISAGREE:
-                self.offset_s += off_s
-                self.sets += 1
-                self._astray = 0
-        if self.sets == 0:
-            self.sets = 1
-        return sensor_s + self.offset_s
-
-    def of_day_s(self, time_of_day_s: float, received_s: float) -> float:
-        """The session's time of a time of day, on the day nearest to its arrival."""
-        near_s = received_s - self.offset_s
-        days = round((near_s - time_of_day_s) / _DAY_S)
-        return self.time_s(time_of_day_s + _DAY_S * days, received_s)
 
 
 @dataclass

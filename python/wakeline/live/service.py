@@ -181,6 +181,8 @@ def feed_record(session: Session, record: Record) -> None:
     elif "state" in record.values:
         if session.time_s == -math.inf:
             session.restore(record.values["state"])
+        else:
+            session.correct()  # as it was when the state was saved
     elif "clock" in record.values:
         session.feed(record.time_s, CLOCK, b"")
 

@@ -49,7 +49,7 @@ _MOST_EVENTS = 500
 
 
 class Watcher(Protocol):
-    """What decides on alarms: told of every picture, asked by operators."""
+    """What decides on alarms: given every picture, asked by operators."""
 
     def update(self, session: Session, time_s: float) -> list[dict[str, Any]]:
         """Events of a new picture."""
@@ -89,7 +89,7 @@ class Session:
     watchers : list of Watcher
         The first decides on alarms and zones.
     news : list of dict
-        Events of tracks since the watchers were last told.
+        Events of tracks since watchers were last called.
     listeners : list of callable
         Called with every event, track update and alarm: kind and values.
     time_s : float
@@ -125,7 +125,9 @@ class Session:
             self.add_output(one)
         self.radars = {one.name: one for one in self.config.radars}
         engine_radars = [one.make_radar(self.config.settings) for one in self.config.radars]
-        self.tracker = TrackEngine(engine_radars, self.config.settings)
+        self.tracker = TrackEngine(
+            engine_radars, self.config.settings, self.config.session.window_s
+        )
         self.feeds = {
             one.name: RadarFeed(one.name, radar.period_s)
             for one, radar in zip(self.config.radars, engine_radars, strict=True)
@@ -145,7 +147,6 @@ class Session:
         self.listeners: list[Callable[[str, dict[str, Any]], None]] = []
         self.events: deque[dict[str, Any]] = deque(maxlen=_MOST_EVENTS)
         self._history: dict[int, deque[tuple[float, float, float]]] = {}
-        self._seen: dict[int, tuple[int, int]] = {}
         self._watched_s = self._published_s = -math.inf
         self._unpublished = ""  # the radar of sectors whose tracks are not reported yet
         self.news: list[dict[str, Any]] = []
@@ -282,7 +283,7 @@ class Session:
             feed = self._feed_of(source, radar)
             if feed is None:
                 return
-            when_s = feed.clock.time_s(values["time_s"], time_s)
+            when_s = feed.clock(values["time_s"], time_s)
             if kind == "plot":
                 stds = values.get("range_std_m", 0.0), values.get("bearing_std_rad", 0.0)
                 plot = PlotRow(
@@ -315,7 +316,7 @@ class Session:
 
     def _take_json_own(self, time_s: float, source: Source, values: dict[str, float]) -> None:
         key = SourceKey("JSON", "", source.group)
-        when_s = source.clock.time_s(values.get("time_s", time_s), time_s)
+        when_s = source.clock(values.get("time_s", time_s), time_s)
         if "latitude_deg" in values:
             place = values["latitude_deg"], values["longitude_deg"]
             self._add_own(when_s, key, "position", place)
@@ -340,7 +341,7 @@ class Session:
         self._report(
             source=values["source"],
             identity=values["identity"],
-            time_s=source.clock.time_s(values["time_s"], time_s),
+            time_s=source.clock(values["time_s"], time_s),
             north_m=north_m,
             east_m=east_m,
             position_std_m=values.get("position_std_m", 10.0),
@@ -419,6 +420,7 @@ class Session:
             elif not 0.0 <= (to_rad - from_rad) % (2 * math.pi) <= 2.0 * width_rad + 0.1:
                 from_rad = sector.from_rad + end.heading_rad
         index = list(self.radars).index(feed.name)
+        self.tracker.note_lateness(sector.time_s, self.time_s)
         events = self.tracker.sector(
             index,
             from_rad,
@@ -499,14 +501,12 @@ class Session:
         """Report the tracks that sectors have updated."""
         self._published_s = self.time_s
         radar, self._unpublished = self._unpublished, ""
-        updated, shown = self.tracker.updated(self._seen)
-        gone = sorted(self._seen.keys() - shown)
+        updated, gone = self.tracker.updated()
         self.shown.take(updated)
         self.shown.drop(gone)
         for track in updated:
             self._remember(track)
         for track_id in gone:
-            del self._seen[track_id]
             self._history.pop(track_id, None)
         if updated or gone:
             for output in self.outputs.values():
@@ -713,6 +713,7 @@ class Session:
                 "time_s": time_s,
                 "frozen": self.frozen,
                 "lost_batches": self.lost,
+                "late": self.tracker.late,
                 "inputs": {name: one.status(time_s) for name, one in self.inputs.items()},
                 "outputs": {name: one.status() for name, one in self.outputs.items()},
                 "radars": {
@@ -740,8 +741,9 @@ class Session:
         """The state of tracks and of the numbers of outputs, ready for JSON.
 
         Sources of own ship, AIS and detection in video are not in it; they are found again from
-        what is fed.
+        what is fed. The picture is corrected.
         """
+        self.correct()
         numbers = {name: one.save() for name, one in self.outputs.items()}
         return {
             "time_s": self.time_s if math.isfinite(self.time_s) else 0.0,
@@ -749,6 +751,10 @@ class Session:
             "tracker": _text(self.tracker.save()),
             "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
         }
+
+    def correct(self) -> None:
+        """Put all late data in the picture."""
+        self._tracker_events(self.tracker.correct())
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from a state; ValueError if it is not that of a session like this one."""

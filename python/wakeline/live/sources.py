@@ -8,13 +8,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from wakeline.wire import SensorClock
+
 from .asterix_feed import CATEGORIES, AsterixFeed
 from .config import InputConfig
 from .json_lines import BadLine, read_line
 from .lines import LineAssembly
 from .nmea import AisMessage, NmeaDecoder
 from .problems import Problems
-from .radar_feed import SensorClock
 from .signalk import SignalkDecoder, VesselReading
 from .spokes import SpokeFeed
 from .video_feed import VideoFeed

@@ -102,7 +102,7 @@ class SpokeFeed:
         amplitude = np.frombuffer(b"".join(one.pixels for one in spokes), np.uint8)
         scaled = np.minimum(amplitude.astype(np.uint16) * self._scale, 255).astype(np.uint8)
         times = [
-            self.video.clock.time_s(1e-3 * one.time_ms, time_s) if one.time_ms else time_s
+            self.video.clock(1e-3 * one.time_ms, time_s) if one.time_ms else time_s
             for one in spokes
         ]
         number = np.array([one.number % self._per_turn for one in spokes])

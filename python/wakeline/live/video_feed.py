@@ -13,9 +13,10 @@ import wakeline as wl
 from wakeline._engine.video import Cat240Decoder, Cat240Sweeps
 from wakeline.extraction.settings import Kind, settings_for
 from wakeline.recording import RadarVideo
+from wakeline.wire import SensorClock
 
 from .problems import Problems
-from .radar_feed import PlotRow, Sector, SensorClock
+from .radar_feed import PlotRow, Sector
 
 _TAU = 2.0 * math.pi
 _BATCH = 32  # messages decoded together
@@ -26,6 +27,7 @@ _BEHIND_RAD = 0.1  # of the beam: echoes up to this width have ended
 _SECTOR_RAD = _TAU / 64
 _TRIAL_RAD = _TAU  # of video that settings are estimated from
 _MOST_TRIAL = 256 << 20  # octets
+_LEAST_STEP_S = 1e-4  # between the ends of sectors
 _SILENT_S = 5.0  # a sweep after a longer silence begins anew
 
 Show = Callable[[np.ndarray, float, np.ndarray], None]
@@ -90,7 +92,7 @@ class VideoFeed:
         self._trial_rad = 0.0
         self._azimuth_rad = math.nan
         self._edge_rad = math.nan
-        self._time_s = -math.inf
+        self._edge_s = self._time_s = -math.inf
 
     def feed(self, time_s: float, octets: bytes, problems: Problems) -> Iterator[PlotRow | Sector]:
         """Take a message; plots and sectors that end with it."""
@@ -178,7 +180,7 @@ class VideoFeed:
     def _times_of(self, time_of_day_s: np.ndarray, received_s: np.ndarray) -> np.ndarray:
         if not math.isfinite(time_of_day_s[0]):
             return received_s
-        first_s = self.clock.of_day_s(float(time_of_day_s[0]), float(received_s[0]))
+        first_s = self.clock(float(time_of_day_s[0]), float(received_s[0]))
         steps = np.nan_to_num(time_of_day_s - time_of_day_s[0])
         return first_s + (steps + 43200.0) % 86400.0 - 43200.0
 
@@ -247,6 +249,9 @@ class VideoFeed:
         time_s = float(sweeps.time_s[-1])
         if rate > 0.0:
             time_s -= _BEHIND_RAD / rate
+        if 0.0 <= self._edge_s - time_s < _LEAST_STEP_S * 1e4:  # the rate is of few sweeps
+            time_s = self._edge_s + _LEAST_STEP_S
+        self._edge_s = time_s
         from_rad = self._edge_rad
         self._edge_rad = (from_rad + passed_rad) % _TAU
         yield Sector(from_rad, from_rad + passed_rad, time_s, [])

@@ -150,6 +150,11 @@ class Settings:
         """A new estimator as the tracker has one for each track."""
         return wl.vessel_imm(radar, _engine("models", self.models))
 
+    def window_of(self, radar: wl.Radar | Sequence[wl.Radar], **room: float) -> wl.LateWindow:
+        """A new tracker of data that may come late; `room` as of :class:`wakeline.LateWindow`."""
+        config, models = _engine("tracker", self.tracker), _engine("models", self.models)
+        return wl.LateWindow(radar, config, models, **room)
+
     def make_strobe_tracker(
         self, period_s: float, bits: int = 8, **estimated: float
     ) -> wl.StrobeTracker:

@@ -252,8 +252,22 @@ TEST(WireSensorClock, HoldsTheOffsetOfAWrongClock) {
   EXPECT_EQ(wrong.changes(), 1);
   EXPECT_EQ(ahead.changes(), 1);
   EXPECT_EQ(right(std::nan(""), 5.0), 5.0);
-  EXPECT_EQ(wrong(std::fmod(200'000.0, 86400.0), 200'000.0), 200'000.0);  // it has been set right
+  for (const double time_s : {200'000.0, 200'010.0})  // it has been set right
+    (void)wrong(std::fmod(time_s, 86400.0), time_s);
   EXPECT_EQ(wrong.offset_s(), 0.0);
+}
+
+TEST(WireSensorClock, DataHeldUpForSecondsKeepTheirTimes) {
+  SensorClock clock;
+  for (int k = 0; k < 30; ++k) EXPECT_EQ(clock(k, k + 0.1), k);
+  for (int k = 30; k < 39; ++k) EXPECT_EQ(clock(k, 39.0 + 1e-3 * k), k);  // all at once
+  EXPECT_EQ(clock(39.0, 39.1), 39.0);
+  EXPECT_EQ(clock.changes(), 0);
+  // Set back by an hour: late at first, then found again.
+  for (int k = 40; k < 80; ++k)
+    EXPECT_NEAR(clock(k - 3600.0, k + 0.1), k < 50 ? k - 3600.0 : k + 0.1, 1e-9);
+  EXPECT_EQ(clock.changes(), 1);
+  EXPECT_LE(clock(80.0 + 3600.0, 80.0), 80.0);  // nothing comes before it is sent
 }
 
 // The feeds of tracks -----------------------------------------------------------------------------
