@@ -53,9 +53,10 @@ TEST(Initiation, StartsFromTwoPlotsWithinTheSpeedLimit) {
   EXPECT_EQ(starts[0].time_s, 2.5);
 }
 
-/// The existence of the start from two plots that are so far apart, and scans.
-double existence_of(double way_m, int scans, const TrackerConfig& config) {
+/// The existence of the start from two plots that are so far apart, and scans, after some without.
+double existence_of(double way_m, int scans, const TrackerConfig& config, int scans_before = 20) {
   Scene scene(config);
+  for (int k = -scans_before; k < 0; ++k) (void)scene.scan({}, 2.5 * k);
   (void)scene.scan({plot_at(1000.0, 1.0, 0.0)}, 0.0);
   for (int k = 1; k < scans; ++k) (void)scene.scan({}, 2.5 * k);
   const auto starts = scene.scan({plot_at(1000.0 + way_m, 1.0, 2.5 * scans)}, 2.5 * scans);
@@ -88,6 +89,18 @@ TEST(Initiation, ExistenceIsThatOfAPoissonSea) {
       1.0 / (2.0 * std::numbers::pi * std::sqrt(s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0)));
   const double odds = 1e-11 / 1e-6 * 0.8 * likelihood / 1e-6;
   EXPECT_NEAR(existence_of(0.0, 1, config) / (odds / (1.0 + odds)), 1.0, 1e-6);
+}
+
+TEST(Initiation, AsManyTargetsAreThereAtFirstAsAppearUntilOneLeaves) {
+  constexpr double kPeriods = 1000.0;
+  const TrackerConfig config{.birth_density_per_m2 = 1e-17,
+                             .survival_time_s = kPeriods * kStageRadar.period_s};
+  const auto after = [&](int scans) { return existence_of(10.0, 1, config, scans); };
+  const double born = after(40);
+  EXPECT_NEAR(after(0) / born, 0.8 * kPeriods, 0.01 * kPeriods);
+  EXPECT_NEAR((after(1) - born) / (after(0) - born), 0.2, 1e-3) << "it has missed one in five";
+  EXPECT_NEAR((after(3) - born) / (after(2) - born), 0.2, 1e-3);
+  EXPECT_NEAR(after(20) / born, 1.0, 1e-3);
 }
 
 TEST(Initiation, APlotThatATrackOwnsStartsNone) {

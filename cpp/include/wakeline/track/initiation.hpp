@@ -146,6 +146,7 @@ class TrackInitiation {
                 const ClutterDensity& clutter, double detection_probability, double beam_rad,
                 bool whole_turn, const HasRoom& has_room, const Start& start) {
     const double longest_s = std::max(config_.coast_scans_max, kLeastScans) * radar.period_s;
+    if (begin_rad_ == kNever) begin_rad_ = whole_turn ? beam_rad - Beam::kTurn : beam_rad;
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       if (plots[k].waits || !(ownership.free_probability()[at] > config_.free_plot)) continue;
@@ -176,6 +177,7 @@ class TrackInitiation {
   void archive(Archive& fields) {
     before_.archive(fields);
     fields(sorted_rad_);
+    fields(begin_rad_);
   }
 
  private:
@@ -191,12 +193,13 @@ class TrackInitiation {
     sorted_rad_ = beam_rad;
   }
 
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
   static constexpr double kMostExistence = 0.3;  ///< of two plots, however near
   static constexpr int kLeastScans = 2;  ///< so far apart two plots of a start may be at least
 
   /// Probability that two plots are a target's and not clutter of density ρ: odds of β/ρ for the
-  /// first, with the birth density β; of PD N(z₂; z₁) / ρ for the second, with the prior of the
-  /// velocity; and 1 - PD for each scan between.
+  /// first, with the density β of targets first seen; of PD N(z₂; z₁) / ρ for the second, with the
+  /// prior of the velocity; and 1 - PD for each scan between.
   [[nodiscard]] double existence(const Radar& radar, const FreePlot& earlier, const ScanPlot& later,
                                  double clutter_per_m2,
                                  double detection_probability) const noexcept {
@@ -209,9 +212,22 @@ class TrackInitiation {
         std::exp(-0.5 * (factor.squared_norm(way) + factor.log_determinant())) /
         (2.0 * std::numbers::pi);
     const double missed = std::max(std::round(dt_s / radar.period_s) - 1.0, 0.0);
-    const double odds = config_.birth_density_per_m2 / clutter_per_m2 * detection_probability *
-                        likelihood / clutter_per_m2 * std::pow(1.0 - detection_probability, missed);
+    const double odds = first_seen_per_m2(radar, earlier.beam_rad, detection_probability) /
+                        clutter_per_m2 * detection_probability * likelihood / clutter_per_m2 *
+                        std::pow(1.0 - detection_probability, missed);
     return std::min(odds / (1.0 + odds), kMostExistence);
+  }
+
+  /// Targets per area whose first plot is one that the beam gives at that angle: β in the long run,
+  /// PD of all that are there in the first turn, and of those that it has missed in the next ones.
+  /// As many are there as appear in the mean time until one leaves.
+  [[nodiscard]] double first_seen_per_m2(const Radar& radar, double beam_rad,
+                                         double detection_probability) const noexcept {
+    const double born = config_.birth_density_per_m2;
+    const double there = born * config_.survival_time_s / radar.period_s;
+    const double turns = std::max(std::floor((beam_rad - begin_rad_) / Beam::kTurn), 0.0);
+    const double missed = std::pow(1.0 - detection_probability, turns);
+    return born + missed * std::max(detection_probability * there - born, 0.0);
   }
 
   /// Of both plots beside the middle between them, as each plot alone is correlated with its
@@ -235,7 +251,8 @@ class TrackInitiation {
 
   TrackerConfig config_;
   FreePlots before_;
-  double sorted_rad_ = 0.0;  ///< angle of the beam when they were sorted
+  double sorted_rad_ = 0.0;    ///< angle of the beam when they were sorted
+  double begin_rad_ = kNever;  ///< and before the first turn, or after its first part
 };
 
 }  // namespace wakeline
