@@ -157,19 +157,20 @@ def north_034(t):
     return block(34, b"\xe0\x01\x02\x01" + of_day(t))
 
 
-def rotating(session, period_s, clock_off_s=0.0, *, twice=False, begin_s=1.75e9):
-    """Feed a radar ashore that marks 32 sectors a turn."""
-    for k in range(30 * 32):
+def rotating(session, period_s, clock=lambda t: t, *, twice=False, begin_s=1.75e9, turns=30):
+    """Feed a radar ashore that marks 32 sectors a turn; its clock shows another time than it is."""
+    for k in range(turns * 32):
         t = k / 32.0 * period_s
+        its_s = clock(begin_s + t)
         azimuth = k % 32 / 32.0 * math.tau
-        messages = [north_034(begin_s + t + clock_off_s)] if k % 32 == 0 else []
+        messages = [north_034(its_s)] if k % 32 == 0 else []
         for place, speed in TARGETS.values():
             seen = place + t * speed
             bearing = math.atan2(seen[1], seen[0]) % math.tau
             if 0.0 <= (azimuth - bearing) % math.tau < math.tau / 32.0:
                 range_m = float(np.hypot(*seen))
-                messages.append(plot_048(begin_s + t + clock_off_s, range_m, bearing))
-        messages.append(sector_034(begin_s + t + clock_off_s, azimuth))
+                messages.append(plot_048(its_s, range_m, bearing))
+        messages.append(sector_034(its_s, azimuth))
         for message in messages:
             session.feed(begin_s + t, "a", message)
             if twice:
@@ -185,7 +186,7 @@ def ashore(**radar):
 @pytest.mark.parametrize("off_s", [0.0, 3 * 3600.0])
 def test_plots_of_category_048_are_tracked_sector_by_sector(off_s):
     session = ashore()
-    rotating(session, 2.5, off_s)
+    rotating(session, 2.5, lambda t: t + off_s)
     status = session.status()
     assert status["inputs"]["a"]["problems"] == {}
     assert status["radars"]["A"]["sectors"] > 900

@@ -24,7 +24,7 @@ from wakeline.live.config import (
 )
 from wakeline.live.network import NetworkInput, NetworkOutput, _Clock
 from wakeline.live.record import Recorder, at_microsecond, read_session, segments_of
-from wakeline.live.service import Service, feed_record
+from wakeline.live.service import Service, feed_record, replay
 from wakeline.recording import RecordingError
 
 ASHORE = RadarConfig("A", position_deg=(54.0, 10.0), settings={"period_s": 2.0})
@@ -212,10 +212,10 @@ def run_demo_like(record, turns, begin_s):
     return session, lines
 
 
-def replayed(path):
+def replayed(path, speed=math.inf):
     session, lines = wl.live.Session(LiveConfig(radars=(ASHORE,))), []
     session.add_output("file:x").send = lines.append
-    for record in read_session(path):
+    for record in replay(path, speed):
         feed_record(session, record)
     return session, lines
 
@@ -230,6 +230,94 @@ def test_a_session_replays_bit_for_bit_and_goes_on_with_the_same_numbers(tmp_pat
     again, more = run_demo_like(path, range(12, 16), begin_s)
     assert {one.track_id for one in again.tracker.tracks()} == numbers
     assert replayed(path)[1][-len(more) :] == more
+
+
+def fed(path, arrivals, **limits):
+    """The session of a service without network, and its lines."""
+    config = LiveConfig(radars=(ASHORE,), session=SessionConfig(**limits))
+    service, lines = Service(wl.live.Session(config), path), []
+    service.session.add_output("file:x").send = lines.append
+    service._begin()
+    for t, octets in arrivals:
+        service._feed("x", [(t, octets)])
+    service.close()
+    return service.session, lines
+
+
+@pytest.mark.parametrize("speed", [1.0, 10.0, math.inf])
+def test_a_replay_at_any_speed_gives_the_same_lines(tmp_path, speed):
+    path, begin_s = tmp_path / "s.pcap", time.time()
+    length_s = 1.2
+    arrivals = [(begin_s + length_s * k / 24.0, turn(k, begin_s, 0.05)[1]) for k in range(25)]
+    _, lines = fed(path, arrivals)
+    began_s = time.monotonic()
+    assert replayed(path, speed)[1] == lines != []
+    took_s = time.monotonic() - began_s
+    assert took_s > 0.95 * length_s / speed
+
+
+def test_late_data_and_segments_replay_bit_for_bit(tmp_path):
+    path, rng, begin_s = tmp_path / "s.pcap", random.Random(2), time.time()
+    turns = [turn(k, begin_s) for k in range(100)]
+    arrivals = sorted((t + 4.0 * rng.random(), octets) for t, octets in turns)
+    session, lines = fed(path, arrivals, segment_mb=0.02)
+    assert len(segments_of(path)) > 2
+    assert session.status()["late"]["late_inputs"] >= 10
+    again, repeated = replayed(path)
+    assert repeated == lines
+    assert repr(again.tracker.tracks()) == repr(session.tracker.tracks())
+
+
+def survivor(path, pieces, acknowledge):
+    """Continue a session with what it has not received; to be killed."""
+    service = Service(wl.live.Session(LiveConfig(radars=(ASHORE,))), path)
+    service._begin()
+    known = service.session.inputs.get("x")
+    for t, octets in pieces[known.rate.messages if known else 0 :]:
+        service._feed("x", [(t, octets)])
+        os.write(acknowledge, b".")
+    signal.pause()
+
+
+def killed_at(path, pieces, moment_s):
+    """Run a survivor in another process until it is killed; how many pieces it has taken."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            survivor(path, pieces, writing)
+        finally:
+            os._exit(1)
+    os.close(writing)
+    taken = len(os.read(reading, 1))
+    time.sleep(moment_s)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    with os.fdopen(reading, "rb") as rest:
+        return taken + len(rest.read())
+
+
+def test_a_session_killed_at_20_moments_loses_at_most_the_last_record_of_each(tmp_path):
+    path, rng, begin_s = tmp_path / "s.pcap", random.Random(7), time.time()
+    pieces = [
+        (t, line + b"\n")
+        for t, octets in (turn(k, begin_s) for k in range(1000))
+        for line in octets.splitlines()
+    ]
+    kept = 0
+    for _ in range(20):
+        taken = killed_at(path, pieces, rng.uniform(0.0, 0.02))
+        records = [record for record in read_session(path) if record.values is None]
+        assert kept + taken <= len(records) <= kept + taken + 1
+        assert [record.octets for record in records] == [line for _, line in pieces[: len(records)]]
+        kept = len(records)
+    assert kept > 40
+    whole = wl.live.Session(LiveConfig(radars=(ASHORE,)))
+    for t, octets in pieces[:kept]:
+        whole.feed(at_microsecond(t), "x", octets)
+    tracks = replayed(path)[0].tracker.tracks()
+    assert len(tracks) == 2
+    assert repr(tracks) == repr(whole.tracker.tracks())
 
 
 def test_what_operators_did_is_replayed(tmp_path):

@@ -78,7 +78,7 @@ class LiveTrack:
         """The likeliest motion, such as "turning"; '' where the models have no names."""
         if len(self.mode_probability) != len(MODE_NAMES):
             return ""
-        return MODE_NAMES[int(np.argmax(self.mode_probability))]
+        return MODE_NAMES[self.mode_probability.index(max(self.mode_probability))]
 
 
 class TrackEngine:
@@ -209,7 +209,7 @@ class TrackEngine:
             rows = rows[~(same & (known_ids[place] == ids))]
         order = np.argsort(ids)
         self._known = ids[order], update[order]
-        return list(self._rows(table, rows)), np.setdiff1d(known_ids, ids).tolist()
+        return list(self._rows(table, rows)), known_ids[~np.isin(known_ids, ids)].tolist()
 
     def _rows(
         self, table: wl.track.TrackTable, rows: np.ndarray | None = None

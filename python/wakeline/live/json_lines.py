@@ -55,6 +55,7 @@ _NEEDED = {
     "own": (),
     "report": ("source", "identity", "time_s"),
 }
+_decode = json.JSONDecoder().decode
 _ENCODER = json.JSONEncoder(separators=(",", ":"), allow_nan=False)
 _TEXTS = ("source", "identity", "name")
 
@@ -73,7 +74,7 @@ def read_line(line: bytes) -> tuple[str, str, dict[str, Any]]:
     BadLine
     """
     try:
-        given = json.loads(line)
+        given = _decode(str(line, "utf-8"))
     except (ValueError, RecursionError) as error:
         raise BadLine(f"wanted one JSON object, {_first_words(error)}") from None
     if not isinstance(given, dict):
@@ -92,11 +93,11 @@ def read_line(line: bytes) -> tuple[str, str, dict[str, Any]]:
 
 def _checked(kind: str, values: Mapping[str, Any]) -> dict[str, Any]:
     checked: dict[str, Any] = {}
-    for name in _NUMBERS[kind]:
-        if name not in values:
+    numbers = _NUMBERS[kind]
+    for name, value in values.items():
+        if name not in numbers:
             continue
-        value = values[name]
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        if type(value) not in (float, int):
             raise BadLine(f"wanted a number in {name}, got {type(value).__name__}")
         if not abs(value) < 1e12:
             raise BadLine(f"wanted a finite number in {name}, got {str(value)[:20]}")

@@ -33,6 +33,7 @@ _PIECE = 1 << 16
 _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
 _MOST_QUEUED = 1 << 20  # octets for a client that does not read
+PROBES = {"TCP_KEEPIDLE": 30, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 3}  # s, s, times
 HOW_TO_GET_SERIAL = "serial lines need pyserial: pip install 'wakeline[live]'"
 
 
@@ -519,9 +520,9 @@ def _bind(one: socket.socket, host: str, port: int) -> None:
 
 
 def _probe(one: socket.socket) -> None:
-    """Ask a silent peer after 30 s whether it is there, so that a half-open connection ends."""
+    """Ask a silent peer whether it is there, so that a half-open connection ends."""
     one.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-    for name, value in (("TCP_KEEPIDLE", 30), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3)):
+    for name, value in PROBES.items():
         if hasattr(socket, name):
             one.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 

@@ -62,9 +62,9 @@ class RecentMessages:
     def __init__(self) -> None:
         self._time_s: dict[int, float] = {}
 
-    def is_new(self, time_s: float, octets: bytes) -> bool:
-        """Whether the message has not come in the last 2 s."""
-        key, times = hash(octets), self._time_s
+    def is_new(self, time_s: float, radar: str, octets: bytes) -> bool:
+        """Whether the message of a radar has not come in the last 2 s."""
+        key, times = hash((radar, octets)), self._time_s
         is_new = time_s - times.get(key, -math.inf) > _TWICE_S
         if is_new:
             times.pop(key, None)
@@ -152,7 +152,7 @@ class Source:
             for each in self._spoke_feed().feed(time_s, octets, self.problems):
                 yield "radar", each
         elif kind == "cat240" or kind in _PLOTS:
-            if not self._shared.recent.is_new(time_s, octets):
+            if not self._shared.recent.is_new(time_s, self.radar, octets):
                 self.duplicates += 1
                 return
             for each in self._receiver(kind).feed(time_s, octets, self.problems):
