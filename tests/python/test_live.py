@@ -258,6 +258,30 @@ def test_plots_in_an_exclusion_zone_start_no_track():
     assert session.status()["radars"]["A"]["excluded_plots"] > 40
 
 
+def test_zones_of_the_settings_are_where_their_corners_are_and_survive_a_restart():
+    """Also where the origin is the first position; those that an operator changed, too."""
+    corners = [[54.01, 9.99], [54.01, 10.01], [54.02, 10.01], [54.02, 9.99]]
+    config = {
+        "radar": [JOYRIDE],
+        "guard_zone": [{"name": "entrance", "outline_deg": corners}],
+        "zone": [{"name": "harbor", "outline_m": [[0, 0], [0, 9], [9, 9]], "cpa_limit_m": 50.0}],
+    }
+    session = wl.live.Session(config)
+    assert session.picture()["zones"] == []
+    own = {"latitude_deg": 54.0, "longitude_deg": 10.0}
+    session.feed(0.0, "own", json.dumps({"own": own}).encode())
+    (zone,) = session.picture()["zones"]
+    places = [session.to_degrees(*corner) for corner in zone["outline_m"]]
+    np.testing.assert_allclose(places, corners, atol=1e-9)
+    drawn = {"outline_deg": corners, "name": "drawn"}
+    assert session.command({"command": "zone", "zone": drawn})["zone"]["zone_id"] == 2
+    assert session.command({"command": "zone_delete", "zone_id": 1})["ok"]
+    again = wl.live.Session(config)
+    again.restore(session.save())
+    assert again.picture()["zones"] == session.picture()["zones"]
+    assert again.command({"command": "zone", "zone": drawn})["zone"]["zone_id"] == 3
+
+
 def test_a_vessel_that_reports_gives_its_track_an_identity():
     session = wl.live.Session({"radar": [JOYRIDE | {"position_deg": [54.0, 10.0]}]})
     lines = written(session)
@@ -633,6 +657,8 @@ def test_printed_settings_read_back_the_same(tmp_path):
             "radar": [{"name": "A", "azimuth": "bow", "forward_m": 3.0, "period_s": 2.5}],
             "own": {"position": ["GGA", "@boat"], "dwell_s": 4.0},
             "tracker": {"max_tracks": 50},
+            "guard_zone": [{"name": "x", "outline_deg": [[54, 10], [54, 10.1], [54.1, 10]]}],
+            "zone": [{"name": "y", "outline_m": [[0, 0], [0, 9], [9, 9]], "cpa_limit_m": 50.0}],
         }
     )
     path = tmp_path / "live.toml"
@@ -643,6 +669,8 @@ def test_printed_settings_read_back_the_same(tmp_path):
     assert again.radars == config.radars
     assert again.settings.tracker == config.settings.tracker
     assert again.own.position == config.own.position
+    assert again.guard_zones == config.guard_zones
+    assert again.settings.zones == config.settings.zones
     assert [one.format for one in config.outputs] == ["json", "ttm"]
     assert config_of(config.as_document()).as_document() == config.as_document()
 
@@ -658,6 +686,8 @@ def test_printed_settings_read_back_the_same(tmp_path):
         ({"own": {"dwell_s": -1.0}}, "dwell_s"),
         ({"own": {"place_deg": [1.0]}}, "place_deg"),
         ({"own": {"dwell_s": "long"}}, "dwell_s"),
+        ({"guard_zone": [{"outline_deg": [[54, 10], [95, 10], [54, 11]]}]}, "outline_deg"),
+        ({"guard_zone": [{"outline_deg": [[54, 10], [55, 10]]}]}, "guard_zone"),
         ({"harbor": {}}, "harbor"),
     ],
 )

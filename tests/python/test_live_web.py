@@ -508,7 +508,7 @@ def test_a_player_obeys():
         assert not player.command(wrong)["ok"]
 
 
-def test_a_session_file_is_played_and_set_back(tmp_path):
+def test_a_session_file_is_played_and_set_back(tmp_path, capsys):
     path = tmp_path / "session.pcap"
     session = Session({"radar": [{"name": "A", "position_deg": [54.0, 10.0], "period_s": 2.5}]})
     recorder = Recorder(path, session.config.as_document())
@@ -532,6 +532,11 @@ def test_a_session_file_is_played_and_set_back(tmp_path):
     assert player.picture()["tracks"] == []
     player.go_to(player.end_s)
     assert same(player.picture(), last)
+    lines = tmp_path / "again.jsonl"
+    command = ["live", "--replay", str(path), "--web", "0", "--speed", "max", "--quiet"]
+    assert main([*command, "--for", "1.5", "--out", f"file:{lines}"]) == 0
+    assert "http://127.0.0.1:" in capsys.readouterr().out
+    assert b'"type":"track"' in lines.read_bytes()
 
 
 def test_no_target_is_acquired_in_an_exclusion_zone():

@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import math
 import signal
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -25,12 +26,14 @@ from wakeline.live.config import (
 )
 from wakeline.live.demo import TTM_PORT, DemoSender, demo_config
 from wakeline.live.network import NetworkOutput, close_all
+from wakeline.live.playback import SPEEDS, SessionPlayback
 from wakeline.live.record import read_session
 from wakeline.live.service import Service, feed_record, replay
 from wakeline.live.session import Session
 from wakeline.tracking.settings import Settings, SettingsError, read_settings
 
 from . import view
+from .options import place
 
 _ABOUT = """\
 Tracks the vessels that radars on the network see, and sends the tracks.
@@ -81,7 +84,12 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         help="record the session (pcap); a file that exists is continued, with the same numbers",
     )
     parser.add_argument("--alarms", type=Path, metavar="F.csv", help="append alarms to a table")
-    parser.add_argument("--replay", type=Path, metavar="SESSION", help="replay a recorded session")
+    parser.add_argument(
+        "--replay",
+        type=Path,
+        metavar="SESSION",
+        help="replay a recorded session; with --web, the screen has a bar that stops and sets it",
+    )
     parser.add_argument(
         "--speed", type=_speed, default=1.0, metavar="X|max", help="of --replay, default 1"
     )
@@ -91,6 +99,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--own",
+        type=place,
         metavar="LAT,LON",
         help="place of a station that does not move, in degrees; default: own ship's instruments",
     )
@@ -143,7 +152,7 @@ def _config(arguments: argparse.Namespace) -> LiveConfig:
         ]
         config = replace(config, radars=tuple(radars))
     if arguments.own is not None:
-        config = replace(config, own=replace(config.own, place_deg=_place(arguments.own)))
+        config = replace(config, own=replace(config.own, place_deg=arguments.own))
     return config
 
 
@@ -188,29 +197,54 @@ def _serve(arguments: argparse.Namespace, service: Service, is_done: Any = lambd
 
 
 def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
+    """Replay a session to its end, or on a screen with a bar until it is stopped."""
+    ends = threading.Event()
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(_stopped_by_signals(ends.set))
+        outputs = [NetworkOutput(one) for one in config.outputs]
+        stack.callback(close_all, outputs)
+        for one in outputs:
+            one.start()
+        log = None
+        if arguments.alarms is not None:
+            log = stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
+
+        def attach(session: Session) -> None:
+            for one in outputs:
+                session.outputs[one.config.name].send = one.send
+            session.watchers[0].log = log
+
+        if arguments.web is None:
+            _replay_all(arguments, config, attach, ends)
+            return
+        speed = min(arguments.speed, SPEEDS[-1])
+        player = SessionPlayback(arguments.replay, speed=speed, config=config, attach=attach)
+        stack.enter_context(_screen(arguments, player))
+        stack.enter_context(contextlib.closing(player.start()))
+        ends_s = time.monotonic() + (arguments.for_s or math.inf)
+        while not ends.wait(1.0) and time.monotonic() < ends_s:
+            if not arguments.quiet:
+                with player.lock:
+                    print(status_line(player.status()), flush=True)
+
+
+def _replay_all(
+    arguments: argparse.Namespace, config: LiveConfig, attach: Any, ends: threading.Event
+) -> None:
     session = Session(config)
-    outputs = [NetworkOutput(one) for one in config.outputs]
-    for one in outputs:
-        session.outputs[one.config.name].send = one.send
-        one.start()
-    service = Service(Session(), None)  # for its signal
+    attach(session)
     count, next_s = 0, time.monotonic()
-    try:
-        with _stopped_by_signals(service.stop), _screen(arguments, session):
-            for record in replay(arguments.replay, arguments.speed, service.ends):
-                with session.lock:
-                    feed_record(session, record)
-                count += 1
-                if not arguments.quiet and time.monotonic() >= next_s:
-                    next_s = time.monotonic() + 1.0
-                    print(status_line(session.status()), flush=True)
-    finally:
-        close_all(outputs)
+    for record in replay(arguments.replay, arguments.speed, ends):
+        feed_record(session, record)
+        count += 1
+        if not arguments.quiet and time.monotonic() >= next_s:
+            next_s = time.monotonic() + 1.0
+            print(status_line(session.status()), flush=True)
     print(f"{count} records replayed, {session.status()['tracks']} tracks at the end")
 
 
 @contextlib.contextmanager
-def _screen(arguments: argparse.Namespace, session: Session) -> Iterator[None]:
+def _screen(arguments: argparse.Namespace, session: Session | SessionPlayback) -> Iterator[None]:
     """Serve the screen while the block runs, if it is asked for."""
     if arguments.web is None:
         yield
@@ -261,15 +295,6 @@ def status_line(status: dict[str, Any]) -> str:
     if status["frozen"]:
         parts.append(status["frozen"])
     return " | ".join(parts)
-
-
-def _place(text: str) -> tuple[float, float]:
-    parts = text.split(",")
-    try:
-        latitude, longitude = map(float, parts)
-    except ValueError:
-        raise ValueError(f"--own must be LAT,LON in degrees, got {text!r}") from None
-    return latitude, longitude
 
 
 def _speed(text: str) -> float:

@@ -47,7 +47,7 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
 
 def add_origin(parser: argparse.ArgumentParser, help_text: str) -> None:
     """Add the option of the position of the plane's origin."""
-    parser.add_argument("--origin", type=_origin, metavar="LAT,LON", help=help_text)
+    parser.add_argument("--origin", type=place, metavar="LAT,LON", help=help_text)
 
 
 def files(arguments: argparse.Namespace, *names: str) -> list[Path]:
@@ -58,7 +58,8 @@ def files(arguments: argparse.Namespace, *names: str) -> list[Path]:
     return [file for file in found if file is not None]
 
 
-def _origin(text: str) -> tuple[float, float]:
+def place(text: str) -> tuple[float, float]:
+    """Latitude and longitude of an argument such as ``63.44,10.40``."""
     try:
         latitude_deg, longitude_deg = map(float, text.split(","))
     except ValueError:

@@ -212,6 +212,8 @@ class Alarms:
         Of a close passing.
     zones : Zones or sequence of Zone, optional
     config : AlarmConfig, optional
+    danger_zones : sequence of wakeline.DangerZone
+        Areas with separate limits of a close passing.
     max_vessels : int
         As many vessels are watched for close passings.
     """
@@ -222,6 +224,7 @@ class Alarms:
         zones: Zones | Sequence[Zone] = (),
         config: AlarmConfig | None = None,
         *,
+        danger_zones: Sequence[wl.DangerZone] = (),
         max_vessels: int = 1000,
     ) -> None:
         whole_number("max_vessels", max_vessels, 1)
@@ -229,8 +232,8 @@ class Alarms:
         self.config = config or AlarmConfig()
         self.time_s = -math.inf
         self._limits = limits or wl.DangerLimits()
-        self._max_vessels = max_vessels
-        self._watch = wl.EncounterWatch(self._limits, [], max_vessels)
+        self._danger_zones, self._max_vessels = list(danger_zones), max_vessels
+        self._watch = wl.EncounterWatch(self._limits, self._danger_zones, max_vessels)
         self._dangers = self._watch.encounters
         self._active: dict[int, Alarm] = {}
         self._ended: deque[Alarm] = deque(maxlen=_MOST_ENDED)
@@ -252,7 +255,7 @@ class Alarms:
     @limits.setter
     def limits(self, limits: wl.DangerLimits) -> None:
         self._limits = limits
-        self._watch = wl.EncounterWatch(limits, [], self._max_vessels)
+        self._watch = wl.EncounterWatch(limits, self._danger_zones, self._max_vessels)
         for alarm in self._encounters.values():
             self._end(alarm, "new limits")
         self._encounters.clear()
@@ -483,6 +486,15 @@ class Alarms:
             self._end(self._stays.pop(key), "zone deleted")
         self._end_momentary("zone deleted", lambda one: one.alarm.zone_id == zone_id)
         return True
+
+    def save(self) -> dict[str, Any]:
+        """Zones and the next number, for `restore`; what lasts begins again by itself."""
+        return {"next_id": self._next_id, "zones": self.zones.save()}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Continue with zones that were saved."""
+        self._next_id = int(state["next_id"])
+        self.zones.restore(state["zones"])
 
     def forget(self, track_id: int) -> None:
         """The operator drops this track: its end is no lost target."""

@@ -14,7 +14,7 @@ import wakeline as wl
 from wakeline._brief import cut, quoted
 from wakeline.tracking.settings import Settings, SettingsError, read_toml
 
-from .zones import Zone
+from .zones import Zone, placed
 
 IN_SCHEMES = (
     "udp",
@@ -30,6 +30,19 @@ OUT_SCHEMES = ("udp", "tcp", "tcp-listen", "serial", "file", "stdout")
 IN_FORMATS = ("", "nmea", "json", "cat240", "cat048", "cat010", "signalk", "spokes")
 OUT_FORMATS = ("json", "ttm", "tll", "cat062", "cat010")
 AZIMUTHS = ("north", "bow")
+
+
+_GUARD_ZONE = """\
+# [[guard_zone]]
+# Alarms when a target enters. kind is guard, exclusion (plots inside start no track) or land.
+# name = "harbor entrance"
+# kind = "guard"
+# Corners: latitude and longitude, or outline_m, [north, east] of the origin. [degrees]
+# outline_deg = [[54.50, 10.10], [54.50, 10.20], [54.45, 10.20]]
+# Of entry, exit and occupancy, which is a stay of occupancy_s.
+# triggers = ["entry"]
+# occupancy_s = 60.0
+""".splitlines()
 
 
 def _key(default: Any, sentence: str) -> Any:
@@ -259,7 +272,8 @@ class LiveConfig:
     settings : Settings
         Tracker, motion models, danger limits and zones, and what radars have in common.
     guard_zones : tuple of dict
-        Zones that alarms or tracks depend on: :class:`wakeline.live.zones.Zone` as objects.
+        Zones that alarms or tracks depend on: :class:`wakeline.live.zones.Zone` as objects, with
+        `outline_m` from the origin or `outline_deg` (latitude, longitude).
     """
 
     inputs: tuple[InputConfig, ...] = ()
@@ -282,7 +296,7 @@ class LiveConfig:
                 _check_choice("radar", one.radar, [radar.name for radar in self.radars])
         for one in self.guard_zones:
             try:
-                Zone.of(one)
+                Zone.of(placed(one, lambda north, east: (north * 1e3, east * 1e3)))
             except (ValueError, TypeError) as error:
                 raise SettingsError(f"[[guard_zone]]: {error}") from None
 
@@ -322,6 +336,7 @@ class LiveConfig:
                 lines += [f"{mark}{line}" for line in _section(f"[{name}]", one)]
         common = self.settings.toml().partition("[tracker]")
         before = common[0].rstrip().rpartition("\n")[2]
+        lines += [] if self.guard_zones else _GUARD_ZONE
         for zone in self.guard_zones:
             lines += ["[[guard_zone]]", *(f"{k} = {json.dumps(v)}" for k, v in zone.items()), ""]
         return "\n".join(lines) + f"\n{before}\n[tracker]{common[2]}"

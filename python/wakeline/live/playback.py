@@ -21,7 +21,7 @@ from wakeline.recording import Episode, OwnShipMotion, Tracks
 from wakeline.tracking import MODE_NAMES, Settings, median_step_s
 
 from .alarms import AlarmConfig, AlarmLog
-from .config import config_of
+from .config import LiveConfig, config_of
 from .record import read_session
 from .service import feed_record
 from .session import Session
@@ -180,6 +180,11 @@ class SessionPlayback(Player):
     ----------
     path : str or Path
     speed : float
+    config : LiveConfig, optional
+        Settings; default those of the file, without outputs.
+    attach : callable, optional
+        Called with the session that plays, to connect its outputs. After the time was set back that
+        is another one, which has played until then without them.
 
     Raises
     ------
@@ -187,19 +192,28 @@ class SessionPlayback(Player):
         When the file is no session.
     """
 
-    def __init__(self, path: str | Path, *, speed: float = 1.0) -> None:
-        self._path = path
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        speed: float = 1.0,
+        config: LiveConfig | None = None,
+        attach: Callable[[Session], None] | None = None,
+    ) -> None:
+        self._path, self._attach = path, attach or (lambda _: None)
         first = next(read_session(path))
-        self._config = config_of(first.values["settings"], path)
+        recorded = replace(config_of(first.values["settings"], path), outputs=())
+        self._config = config or recorded
         start_s = end_s = first.time_s
         for record in read_session(path):
             end_s = max(end_s, record.time_s)
         super().__init__(start_s, end_s, speed)
         self._begin()
+        self._attach(self._session)
         self._advance(start_s)
 
     def _begin(self) -> None:
-        self._session = Session(replace(self._config, outputs=()))
+        self._session = Session(self._config)
         self._session.sweeps.append(self._show)
         self._records = read_session(self._path)
         self._next = next(self._records, None)
@@ -217,6 +231,7 @@ class SessionPlayback(Player):
         zones = self._session.watchers[0].alarms.zones
         self._begin()
         self._advance(time_s)
+        self._attach(self._session)
         self._session.watchers[0].alarms.zones.adopt(zones)
 
     def picture(self) -> dict[str, Any]:

@@ -28,7 +28,7 @@ from .radar_feed import PlotRow, RadarFeed, Sector, columns
 from .shown import Shown
 from .sources import Receivers, Source
 from .watch import AlarmWatcher
-from .zones import Zone
+from .zones import Zone, placed
 
 Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
 """Called with radar, azimuth_rad (n,), heading_rad (NaN: azimuths from north), range_m of the end
@@ -141,7 +141,8 @@ class Session:
         self.watchers: list[Watcher] = [
             AlarmWatcher(
                 self.config.settings.danger_limits,
-                zones=[Zone.of(zone) for zone in self.config.guard_zones],
+                zones=[Zone.of(one) for one in self.config.guard_zones if "outline_deg" not in one],
+                danger_zones=self.config.settings.danger_zones,
             )
         ]
         self.listeners: list[Callable[[str, dict[str, Any]], None]] = []
@@ -749,6 +750,7 @@ class Session:
             "time_s": self.time_s if math.isfinite(self.time_s) else 0.0,
             "origin_deg": self.origin_deg,
             "tracker": _text(self.tracker.save()),
+            "alarms": self.watchers[0].alarms.save(),
             "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
         }
 
@@ -762,6 +764,7 @@ class Session:
             self.tracker.restore(base64.b64decode(state["tracker"]))
             if state["origin_deg"] is not None:
                 self._set_origin(*map(float, state["origin_deg"]))
+            self.watchers[0].alarms.restore(state["alarms"])
             self.time_s = float(state["time_s"])
             for name, text in state["outputs"].items():
                 if name in self.outputs:
@@ -851,9 +854,14 @@ class Session:
         return math.degrees(self.plane.latitude_rad), math.degrees(self.plane.longitude_rad)
 
     def _set_origin(self, latitude_deg: float, longitude_deg: float) -> None:
+        is_first = self.plane is None
         self.plane = wl.LocalPlane(
             latitude_rad=math.radians(latitude_deg), longitude_rad=math.radians(longitude_deg)
         )
+        if is_first:
+            for one in self.config.guard_zones:
+                if "outline_deg" in one:
+                    self.watchers[0].alarms.set_zone(placed(one, self.to_plane))
 
     def to_plane(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
         """[north, east] of a place; the origin must be known."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 import wakeline as wl
 
 from .alarms import AlarmConfig, AlarmEvent, AlarmLog, Alarms, Disagreement, Sensor
-from .zones import Zone, Zones
+from .zones import Zone, Zones, placed
 
 _LIMITS = ("cpa_limit_m", "tcpa_limit_s", "alarm_probability")
 
@@ -27,6 +27,8 @@ class AlarmBoard:
     config : AlarmConfig, optional
     log : AlarmLog, optional
         Receives every change.
+    danger_zones : sequence of wakeline.DangerZone
+        Areas with separate limits.
 
     Attributes
     ----------
@@ -40,8 +42,9 @@ class AlarmBoard:
         zones: Zones | Sequence[Zone] = (),
         config: AlarmConfig | None = None,
         log: AlarmLog | None = None,
+        danger_zones: Sequence[wl.DangerZone] = (),
     ) -> None:
-        self.alarms = Alarms(limits, zones, config)
+        self.alarms = Alarms(limits, zones, config, danger_zones=danger_zones)
         self.log = log
 
     def take(self, time_s: float, tracks: Any, **others: Any) -> list[AlarmEvent]:
@@ -118,6 +121,8 @@ class AlarmWatcher(AlarmBoard):
         if command.get("command") == "drop" and "track_id" in command:
             self.alarms.forget(int(command["track_id"]))
             return None
+        if command.get("command") == "zone" and session.plane is not None:
+            return self.obey({**command, "zone": placed(command["zone"], session.to_plane)})
         return self.obey(command)
 
     def picture(self, session: Any) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
@@ -160,6 +160,23 @@ class Zone:
         return np.where(inside, edge_m, -edge_m)
 
 
+def placed(values: Any, to_plane: Callable[[float, float], tuple[float, float]]) -> Any:
+    """A zone as a JSON object with `outline_m`, made of its `outline_deg` (latitude, longitude).
+
+    Raises
+    ------
+    ValueError
+        When a corner is no place.
+    """
+    if not isinstance(values, Mapping) or "outline_deg" not in values:
+        return values
+    corners = np.asarray(values["outline_deg"], dtype=float)
+    if corners.ndim != 2 or corners.shape[1] != 2 or not (np.abs(corners) <= [90.0, 360.0]).all():
+        raise ValueError("outline_deg must be corners [latitude, longitude] in degrees")
+    rest = {name: value for name, value in values.items() if name != "outline_deg"}
+    return rest | {"outline_m": [list(to_plane(*corner)) for corner in corners.tolist()]}
+
+
 _SECTOR = ("near_m", "far_m", "from_rad", "to_rad", "from_bow")
 
 
@@ -274,6 +291,16 @@ class Zones:
                 _Watched(zone) if before is None else _Watched(zone, before.inside, before.seen)
             )
         self._next_id = max(self._next_id, other._next_id)
+
+    def save(self) -> dict[str, Any]:
+        """Zones and the next number, for JSON and `restore`."""
+        return {"next_id": self._next_id, "zones": [zone.as_dict() for zone in self]}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Replace all zones by those that were saved."""
+        zones = [Zone.of(one) for one in state["zones"]]
+        self._watched = {zone.zone_id: _Watched(zone) for zone in zones}
+        self._next_id = int(state["next_id"])
 
     def keeps_out(self, place_m: ArrayLike) -> NDArray[np.bool_]:
         """Whether places (n, 2) are in an exclusion zone or on land."""
