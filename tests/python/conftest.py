@@ -7,6 +7,14 @@ settings.register_profile("wakeline", deadline=None)
 settings.load_profile("wakeline")
 
 
+@pytest.fixture(autouse=True, scope="session")
+def coarse_pictures():
+    """Most of the time that a picture takes is that of its dots."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("wakeline.plot.style._DOTS_PER_IN", 50)
+        yield
+
+
 @pytest.fixture
 def no_pictures(request, monkeypatch):
     """Pictures take most of the time; they are drawn where a test asks for `pictures`."""

@@ -31,6 +31,7 @@ INK = "#1F2328"
 MUTED = "#8C959F"
 GRID = "#E4E7EB"
 TEXT_PT = 9
+_DOTS_PER_IN = 160
 _ROOM_ABOVE = 1.08
 _GAP_STEPS = 4.0
 _BESIDE_IN = 0.7  # minimum width left of the axes of a column of panels
@@ -41,7 +42,9 @@ def figure(width_in: float = 7.2, height_in: float = 6.0) -> Figure:
     """A new figure of the given size, independent of any window."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width_in, height_in), dpi=160, layout="constrained", facecolor="white")
+    return Figure(
+        figsize=(width_in, height_in), dpi=_DOTS_PER_IN, layout="constrained", facecolor="white"
+    )
 
 
 def save(fig: Figure, path: str | Path) -> None:
