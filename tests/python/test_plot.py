@@ -192,7 +192,7 @@ def test_ids_of_tracks_cover_none_of_longer_ones(count, side_m):
 
 
 def test_a_dangerous_track_is_red_and_has_its_own_colour(monkeypatch):
-    monkeypatch.setattr("wakeline.plot.style._DOTS_PER_IN", 160)  # thin lines are seen by their dots
+    monkeypatch.setattr("wakeline.plot.style._DOTS_PER_IN", 160)  # a line of a dot is blurred
     state = np.column_stack([np.zeros(9), np.zeros(9), 10.0 * np.arange(9), np.full(9, 10.0)])
     tracks = Tracks(["1"] * 9, np.arange(9.0), state)
     fig = plot.map(replace(tracks, alarmed=np.ones(9, dtype=bool)))
