@@ -2,6 +2,7 @@
 
 import json
 import math
+import time
 
 import numpy as np
 import pytest
@@ -457,8 +458,11 @@ def test_a_page_is_back_when_the_server_is(page):
     page.wait_for("!document.querySelector('#link').hidden")
     assert "old" in page.run("document.querySelector('#link').textContent")
     harbor.add(2, -800.0, 300.0)
+    time.sleep(2.0)  # in which a page that waits longer after each failure would lose its patience
     with WebServer(harbor, port=port):
+        began_s = time.monotonic()
         page.wait_for("wakeline.store.tracks.size === 2")
+        assert time.monotonic() - began_s < 1.0
         page.wait_for("document.querySelector('#link').hidden")
 
 

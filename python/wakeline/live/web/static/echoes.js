@@ -4,6 +4,7 @@ const HEADER = 16; // kind, radar, rows, columns, count, range_m, heading
 const TRUE_CELLS = 1024; // of a side of the picture of true trails
 const STRONG = 3; // levels above the gain that leave a trail
 const ROUNDS_S = 65000;
+const NEAR_ROWS = 4; // of an echo's own, that a pixel near the antenna may show
 
 /** The echoes of one radar, and when each place last had one. */
 class Radar {
@@ -84,6 +85,7 @@ export class Echoes {
   constructor(canvas, wantsGl = true) {
     this.radars = new Map();
     this.gap = 0;
+    this.version = 0; // of messages
     this.painter = null;
     if (wantsGl) {
       try {
@@ -106,6 +108,11 @@ export class Echoes {
     const { gl } = this.painter;
     const known = gl.getExtension("WEBGL_debug_renderer_info");
     return /swiftshader|llvmpipe|software/i.test(known ? gl.getParameter(known.UNMASKED_RENDERER_WEBGL) : "");
+  }
+
+  /** Canvas pixels of a screen's: fewer where the processor draws them. */
+  get share() {
+    return this.usesGl ? (this.isSoftware ? 0.5 : 1) : 2 / 3;
   }
 
   get range_m() {
@@ -131,6 +138,7 @@ export class Echoes {
     const place = placeOf(number);
     radar.take(view, count, threshold, Echoes.stamp(time_s), [place.north, place.east]);
     this.changed = true;
+    this.version += 1;
   }
 
   clear() {
@@ -150,9 +158,10 @@ export class Echoes {
       settings.gain, settings.trails, settings.trailMinutes, palette.background,
       this.radars.size && settings.trails !== "off" ? Math.floor(time_s) : 0,
     ].join();
-    if (!this.changed && key === this.key) return;
+    const whole = key !== this.key;
+    if (!this.changed && !whole) return;
     this.key = key;
-    this.painter.draw(radars, view, settings, palette, Echoes.stamp(time_s));
+    this.painter.draw(radars, view, settings, palette, Echoes.stamp(time_s), whole);
     this.changed = false;
   }
 
@@ -209,7 +218,7 @@ void main() {
   float row = fract(bearing / TURN + 1.0) * float(shape.y);
   float column = r / range * float(shape.x);
   float deep = 0.5 * metres / range * float(shape.x);
-  float wide = min(0.5 * metres / max(r, metres) / TURN * float(shape.y), 4.0);
+  float wide = min(0.5 * metres / max(r, metres) / TURN * float(shape.y), ${NEAR_ROWS}.0);
   int first = max(int(floor(column - deep + 0.5)), 0), last = min(int(floor(column + deep - 0.5)), shape.x - 1);
   first = min(first, int(column)); last = max(last, int(column)); last = min(last, min(first + 7, shape.x - 1));
   int low = int(floor(row - wide + 0.5)), high = int(floor(row + wide - 0.5));
@@ -290,8 +299,8 @@ class GlPainter {
     return texture;
   }
 
-  /** Textures of a radar, with the rows that are new. */
-  upload(number, radar) {
+  /** Textures of a radar, with the rows that are new; `onRows` gets the first and the end of each run of these. */
+  upload(number, radar, onRows) {
     const gl = this.gl;
     let set = this.textures.get(number);
     if (set?.radar !== radar) {
@@ -307,10 +316,7 @@ class GlPainter {
       radar.fixedFrom = 0;
       radar.fixedTo = TRUE_CELLS - 1;
     }
-    set.textures.forEach((texture, unit) => {
-      gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.bindTexture(gl.TEXTURE_2D, texture);
-    });
+    this.bind(number);
     for (let row = 0; row < radar.rows; ) {
       if (!radar.dirty[row]) {
         row += 1;
@@ -324,6 +330,7 @@ class GlPainter {
       gl.texSubImage2D(gl.TEXTURE_2D, 0, ...part, gl.UNSIGNED_BYTE, radar.levels.subarray(from, to));
       gl.activeTexture(gl.TEXTURE1);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, ...part, gl.UNSIGNED_SHORT, radar.relative.subarray(from, to));
+      onRows(row, end);
       row = end;
     }
     if (radar.fixedTo >= radar.fixedFrom) {
@@ -334,18 +341,60 @@ class GlPainter {
     }
   }
 
+  bind(number) {
+    const gl = this.gl;
+    this.textures.get(number).textures.forEach((texture, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+    });
+  }
+
   blank(palette) {
     const { gl } = this;
+    gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(...rgb(palette.background).map((v) => v / 255), 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
   }
 
-  draw(radars, view, settings, palette, now) {
+  /** The part of the canvas, in its pixels from the bottom left, that rows of a radar are in. */
+  static box(radar, place, first, end, view, canvas) {
+    const ratio = canvas.width / view.width;
+    const [near, step] = [NEAR_ROWS + 1, (2 * Math.PI) / radar.rows];
+    const from = (first - near) * step;
+    const width = Math.min((end - first + 2 * near) * step, 2 * Math.PI);
+    const [x, y] = view.toScreen(place.north, place.east);
+    const reach = 1.02 * radar.range_m * view.scale;
+    const around = 4 + radar.cell_m * view.scale;
+    const box = [x, y, x, y];
+    const pieces = Math.ceil(width / 0.15);
+    for (let k = 0; k <= pieces; k += 1) {
+      const a = view.screenAngle(from + (width * k) / pieces);
+      const [px, py] = [x + reach * Math.sin(a), y - reach * Math.cos(a)];
+      [box[0], box[1]] = [Math.min(box[0], px), Math.min(box[1], py)];
+      [box[2], box[3]] = [Math.max(box[2], px), Math.max(box[3], py)];
+    }
+    const [left, right] = [box[0] - around, box[2] + around].map((v) => Math.min(Math.max(Math.round(v * ratio), 0), canvas.width));
+    const [top, bottom] = [box[1] - around, box[3] + around].map((v) => Math.min(Math.max(Math.round(v * ratio), 0), canvas.height));
+    return [left, canvas.height - bottom, right, canvas.height - top];
+  }
+
+  /** Draw the whole picture, or where the new rows are. */
+  draw(radars, view, settings, palette, now, whole) {
     const { gl, places, canvas } = this;
     if (gl.isContextLost()) return;
     const ratio = canvas.width / view.width;
     const beyond = rgb(palette.beyond).map((v) => v / 255);
+    let box = whole ? [0, 0, canvas.width, canvas.height] : [Infinity, Infinity, 0, 0];
+    const join = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[2], b[2]), Math.max(a[3], b[3])];
+    for (const [number, radar, place] of radars) {
+      this.upload(number, radar, (first, end) => {
+        if (!whole) box = join(box, GlPainter.box(radar, place, first, end, view, canvas));
+      });
+    }
+    if (!(box[2] > box[0] && box[3] > box[1])) return;
     gl.viewport(0, 0, canvas.width, canvas.height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(box[0], box[1], box[2] - box[0], box[3] - box[1]);
     gl.disable(gl.BLEND);
     gl.clearColor(...(radars.length ? beyond : rgb(palette.background).map((v) => v / 255)), 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
@@ -361,7 +410,7 @@ class GlPainter {
     gl.uniform3fv(places.trail, palette.trail.map((v) => v / 255));
     gl.uniform3fv(places.background, rgb(palette.background).map((v) => v / 255));
     radars.forEach(([number, radar, place], k) => {
-      this.upload(number, radar);
+      this.bind(number);
       if (k > 0) {
         gl.enable(gl.BLEND);
         gl.blendEquation(gl.MAX);
@@ -388,7 +437,7 @@ class PlainPainter {
     this.key = "";
   }
 
-  /** For each pixel of half the resolution its row and column, once for a range and a rotation. */
+  /** For each pixel of the canvas its row and column, once for a range and a rotation. */
   table(radar, view, width, height, center) {
     const key = [width, height, ...view.middle, view.range_m, view.rotation.toFixed(3), ...center.map((v) => (v * view.scale).toFixed(1)), radar.rows, radar.columns, radar.range_m].join();
     if (key === this.key) return;
@@ -425,10 +474,8 @@ class PlainPainter {
       this.blank(palette);
       return;
     }
-    context.fillStyle = palette.beyond;
-    context.fillRect(0, 0, canvas.width, canvas.height);
     const [, radar, place] = radars.reduce((a, b) => (b[1].range_m > a[1].range_m ? b : a));
-    const [width, height] = [Math.ceil(view.width / 1.5), Math.ceil(view.height / 1.5)];
+    const { width, height } = canvas;
     this.table(radar, view, width, height, [view.center[0] - place.north, view.center[1] - place.east]);
     if (this.image?.width !== width || this.image?.height !== height) this.image = new ImageData(width, height);
     const pixels = new Uint32Array(this.image.data.buffer);
@@ -439,7 +486,7 @@ class PlainPainter {
     const dark = packed(background);
     const trail = Array.from({ length: 16 }, (_, k) => packed(background.map((v, c) => Math.round(v + (0.25 + (0.75 * k) / 15) * (palette.trail[c] - v)))));
     const length_s = settings.trailMinutes * 60;
-    const deep = Math.max(1, Math.min(MOST_DEEP, Math.round(((1.5 / view.scale) * radar.columns) / radar.range_m)));
+    const deep = Math.max(1, Math.min(MOST_DEEP, Math.round(((view.width / width / view.scale) * radar.columns) / radar.range_m)));
     const fixed = settings.trails === "true";
     const stamps = fixed ? radar.fixed : radar.relative;
     const [mx, my] = view.middle.map((v) => (v * width) / view.width);
@@ -469,10 +516,6 @@ class PlainPainter {
       const age = now - stamps[cell];
       if (stamps[cell] && age >= 0 && age < length_s) pixels[at] = trail[Math.floor(15.99 * (1 - age / length_s))];
     }
-    this.scratch ??= document.createElement("canvas");
-    if (this.scratch.width !== width || this.scratch.height !== height) Object.assign(this.scratch, { width, height });
-    this.scratch.getContext("2d").putImageData(this.image, 0, 0);
-    context.imageSmoothingEnabled = false;
-    context.drawImage(this.scratch, 0, 0, canvas.width, canvas.height);
+    context.putImageData(this.image, 0, 0);
   }
 }

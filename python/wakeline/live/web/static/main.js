@@ -14,6 +14,7 @@ const KEPT = "wakeline-settings";
 const PANEL_MS = 500;
 const BLINK_MS = 500;
 const FRAME_MS = 40;
+const SYMBOLS_MS = 90; // in which a vessel moves less than a pixel
 const TRAIL_MINUTES = [1, 3, 6, 15, 30];
 const VECTOR_MINUTES = [1, 3, 6, 12, 30];
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 10, 20, 50];
@@ -99,7 +100,6 @@ const link = new Link({
   onEchoes: (buffer) => {
     echoes.take(buffer, settings.gain, store.now(performance.now()), placeOf(own()));
     if (!fitted) fit();
-    changed();
   },
   onGap: (rows) => {
     echoes.gap += rows;
@@ -550,9 +550,9 @@ function resize() {
   const replay = byId("replay").hidden ? 0 : byId("replay").offsetHeight + 6;
   view.resize(box.width, box.height, top, 42 + replay);
   for (const id of ["tools", "own", "link"]) byId(id).style.top = `${top + 8}px`;
-  for (const canvas of [byId("echoes"), byId("overlay")]) {
-    canvas.width = Math.round(box.width * ratio);
-    canvas.height = Math.round(box.height * ratio);
+  for (const [name, share] of [["echoes", echoes.share], ["overlay", 1]]) {
+    byId(name).width = Math.round(box.width * ratio * share);
+    byId(name).height = Math.round(box.height * ratio * share);
   }
   changed();
 }
@@ -580,6 +580,8 @@ function covered() {
 
 const spent = { frames: 0, total_ms: 0, most_ms: 0 };
 let drawn_ms = 0;
+let symbols_ms = 0;
+let drawnEchoes = -1;
 let panel_ms = 0;
 let blink = false;
 function frame(now_ms) {
@@ -587,8 +589,9 @@ function frame(now_ms) {
   const due = now_ms - panel_ms > PANEL_MS;
   if (now_ms - drawn_ms < FRAME_MS || document.hidden) return;
   const blinks = Math.floor(now_ms / BLINK_MS) % 2 === 1;
-  const moves = connected && !(store.replay?.paused) && now_ms - drawn_ms > 90;
-  if (!dirty && !moves && blinks === blink && !due && !panelDue) return;
+  const moves = connected && !(store.replay?.paused) && now_ms - symbols_ms > SYMBOLS_MS;
+  const symbols = dirty || moves || blinks !== blink || due || panelDue;
+  if (!symbols && echoes.version === drawnEchoes) return;
   const began = performance.now();
   drawn_ms = now_ms;
   dirty = false;
@@ -597,9 +600,20 @@ function frame(now_ms) {
   const here = store.ownAt(time_s);
   view.follow(here);
   const palette = PALETTES[settings.palette];
-  const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed, covered: covered() };
+  drawnEchoes = echoes.version;
   if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, placeOf(here));
   else echoes.blank(palette);
+  if (symbols) drawSymbols(now_ms, time_s, here, palette, due);
+  const took_ms = performance.now() - began;
+  spent.frames += 1;
+  spent.total_ms += took_ms;
+  spent.most_ms = Math.max(spent.most_ms, took_ms);
+}
+
+/** All but the echoes: these change with every frame, the rest slowly. */
+function drawSymbols(now_ms, time_s, here, palette, due) {
+  symbols_ms = now_ms;
+  const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed, covered };
   overlay.draw(scene);
   placeCard();
   showCursor(here);
@@ -612,10 +626,6 @@ function frame(now_ms) {
     showReplay();
     sound(now_ms);
   }
-  const took_ms = performance.now() - began;
-  spent.frames += 1;
-  spent.total_ms += took_ms;
-  spent.most_ms = Math.max(spent.most_ms, took_ms);
 }
 
 tools.choose("select");

@@ -10,11 +10,15 @@ const MOST_PAST_SHOWN = 12;
 const TARGET_PX = 6;
 const DANGER_PX = 10;
 const CIRCLE_PX = 8;
+const TEXT_PX = 3; // about a text, for its halo
+const MOST_TEXTS = 600;
 
 export class Overlay {
   constructor(canvas, isSoftware) {
     this.canvas = canvas;
     this.kind = { willReadFrequently: isSoftware }; // drawn by the processor, not by an emulation
+    this.isSoftware = isSoftware;
+    this.texts = new Map();
     this.context = canvas.getContext("2d", this.kind);
     this.offsets = new Map();
     this.labels_ms = -Infinity;
@@ -92,7 +96,18 @@ export class Overlay {
   }
 
   text(text, x, y, color, { font = SMALL, align = "center" } = {}) {
-    const c = this.context;
+    if (!this.isSoftware) {
+      this.write(this.context, text, x, y, color, font, align);
+      return;
+    }
+    const made = this.written(text, color, font);
+    const [width, height] = [made.width / this.ratio, made.height / this.ratio];
+    const left = align === "left" ? x - TEXT_PX : x - width / 2;
+    const [px, py] = [left, y - height / 2].map((v) => Math.round(v * this.ratio) / this.ratio);
+    this.context.drawImage(made, px, py, width, height);
+  }
+
+  write(c, text, x, y, color, font, align) {
     c.font = font;
     c.textAlign = align;
     c.textBaseline = "middle";
@@ -101,6 +116,24 @@ export class Overlay {
     c.strokeText(text, x, y);
     c.fillStyle = color;
     c.fillText(text, x, y);
+  }
+
+  /** A text as a picture, for a processor that copies faster than it draws. */
+  written(text, color, font) {
+    const key = `${text}\n${color} ${font} ${this.ratio}`;
+    let made = this.texts.get(key);
+    if (!made) {
+      if (this.texts.size >= MOST_TEXTS) this.texts.clear();
+      made = document.createElement("canvas");
+      const c = made.getContext("2d", this.kind);
+      c.font = font;
+      made.width = Math.ceil((c.measureText(text).width + 2 * TEXT_PX) * this.ratio);
+      made.height = Math.ceil(18 * this.ratio);
+      c.scale(this.ratio, this.ratio);
+      this.write(c, text, TEXT_PX, 9, color, font, "left");
+      this.texts.set(key, made);
+    }
+    return made;
   }
 
   drawOwn() {
@@ -153,11 +186,17 @@ export class Overlay {
 
   strokeVectors() {
     const c = this.context;
-    c.lineWidth = 1.6;
     c.setLineDash([6, 3]);
     for (const [color, path] of this.vectors) {
       c.strokeStyle = color;
+      // A thousand lines of one pixel take a processor 2 ms, wider ones 50.
+      c.lineWidth = this.isSoftware ? 1 / this.ratio : 1.6;
       c.stroke(path);
+      if (this.isSoftware && color === this.scene.palette.danger) {
+        c.translate(0.6, 0.6);
+        c.stroke(path);
+        c.translate(-0.6, -0.6);
+      }
     }
     c.setLineDash([]);
     this.vectors.clear();
@@ -209,13 +248,13 @@ export class Overlay {
       const place = store.at(track, time_s);
       const [x, y] = view.toScreen(place.north, place.east);
       if (x < -60 || y < -60 || x > view.width + 60 || y > view.height + 60) continue;
-      shown.push({
-        ...track, ...place, x, y,
-        danger: dangers.get(track.id) ?? null,
-        alarmed: alarmed.has(track.id),
-        flashes: alarmed.get(track.id) ?? false,
-        selected: track.id === selected,
-      });
+      track.x = x; // beside the values of the message, so that a frame makes no objects
+      track.y = y;
+      track.danger = dangers.get(track.id) ?? null;
+      track.alarmed = alarmed.has(track.id);
+      track.flashes = alarmed.get(track.id) ?? false;
+      track.selected = track.id === selected;
+      shown.push(track);
     }
     return shown;
   }
@@ -439,16 +478,20 @@ export class Overlay {
     c.font = FONT;
     const rank = (one) => (one.selected ? 0 : one.danger || one.alarmed ? 1 : one.isAis ? 4 : one.name ? 2 : 3);
     const near = (one) => Math.hypot(one.x - this.own.x, one.y - this.own.y);
-    const items = [...targets, ...vessels].map((one) => {
+    const due = now_ms - this.labels_ms > LABELS_MS;
+    const items = [];
+    for (const one of [...targets, ...vessels]) {
+      if (!due && !this.offsets.has(one.id)) continue;
       const lines = this.linesOf(one);
-      return { one, lines, id: one.id, x: one.x, y: one.y, width: Math.max(...lines.map((line) => this.widthOf(line))) + 4, height: 14 * lines.length };
-    });
-    if (now_ms - this.labels_ms > LABELS_MS) {
+      const width = Math.max(...lines.map((line) => this.widthOf(line))) + 4;
+      items.push({ one, lines, id: one.id, x: one.x, y: one.y, width, height: 14 * lines.length, rank: rank(one), near: near(one) });
+    }
+    if (due) {
       this.labels_ms = now_ms;
-      items.sort((a, b) => rank(a.one) - rank(b.one) || near(a.one) - near(b.one));
+      items.sort((a, b) => a.rank - b.rank || a.near - b.near);
       const symbols = items.map(({ one }) => ({ x: one.x, y: one.y, radius: one.danger || one.alarmed || one.selected ? 13 : 8 }));
       symbols.push({ x: this.own.x, y: this.own.y, radius: 9 });
-      this.offsets = placeLabels(items, symbols, this.scene.covered, this.offsets, [4, view.top + 2, view.width - 4, view.height - view.bottom]);
+      this.offsets = placeLabels(items, symbols, this.scene.covered(), this.offsets, [4, view.top + 2, view.width - 4, view.height - view.bottom]);
     }
     for (const item of items) {
       const offset = this.offsets.get(item.id);
