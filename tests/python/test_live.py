@@ -586,6 +586,33 @@ def test_signalk_gives_own_ship_and_vessels():
     assert session.status()["inputs"]["sk"]["problems"] == {"Signal K": 1}
 
 
+def test_a_vessel_that_reports_from_a_track_names_it_in_the_picture():
+    inputs = [{"url": "signalk://127.0.0.1:3000?name=sk"}]
+    session = wl.live.Session(
+        {"input": inputs, "radar": [JOYRIDE | {"position_deg": [54.0, 10.0]}]}
+    )
+    urn = "vessels.urn:mrn:imo:mmsi:%d"
+    session.feed(0.0, "sk", json.dumps({"self": urn % 211000001}).encode())
+    for k in range(20):
+        t, north_m = 3.0 * k, 2000.0 - 15.0 * k
+        for mmsi, east_m in ((211000002, 0.0), (211000003, 3000.0)):
+            degrees = session.to_degrees(north_m, east_m)
+            place = dict(zip(("latitude", "longitude"), degrees, strict=True))
+            moving = {"navigation.speedOverGround": 5.0}
+            moving["navigation.courseOverGroundTrue"] = math.pi
+            session.feed(t, "sk", delta(urn % mmsi, **{"navigation.position": place}, **moving))
+        for line in (
+            {"time_s": t, "range_m": north_m, "bearing_rad": 0.0},
+            {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}},
+        ):
+            session.feed(t, "radar", json.dumps(line).encode())
+    picture = session.picture()
+    tracks = {one["identity"]: one["track_id"] for one in picture["tracks"]}
+    seen = {one["mmsi"]: one["track_id"] for one in picture["ais"]}
+    assert seen[211000002] == tracks["211000002"]
+    assert seen[211000003] == tracks.get("211000003")
+
+
 def varint(value):
     octets = bytearray()
     while value > 127:

@@ -650,6 +650,8 @@ class Session:
         ``ais``, ``alarms``, ``zones`` and ``status``.
         """
         time_s = self.time_s if math.isfinite(self.time_s) else 0.0
+        tracks = self.describe(self.tracker.tracks(self._shown_s(time_s)))
+        track_of = {one["identity"]: one["track_id"] for one in tracks}
         picture = {
             "version": json_lines.VERSION,
             "time_s": time_s,
@@ -658,9 +660,12 @@ class Session:
             "radars": [self._radar_picture(name, time_s) for name in self.radars],
             "tracks": [
                 values | {"history": list(self._history.get(values["track_id"], ()))}
-                for values in self.describe(self.tracker.tracks(self._shown_s(time_s)))
+                for values in tracks
             ],
-            "ais": [self._vessel_picture(vessel, time_s) for vessel in self.ais.vessels.values()],
+            "ais": [
+                self._vessel_picture(vessel, time_s) | {"track_id": track_of.get(str(vessel.mmsi))}
+                for vessel in self.ais.vessels.values()
+            ],
             "alarms": [],
             "zones": [],
             "status": self.status(),

@@ -119,6 +119,16 @@ export class Echoes {
     return Math.max(0, ...[...this.radars.values()].map((radar) => radar.range_m));
   }
 
+  /** The range at which most of every picture is seen from a place. */
+  reach(placeOf, { north, east }) {
+    const seen = [...this.radars].map(([number, radar]) => {
+      const place = placeOf(number);
+      const away = Math.hypot(place.north - north, place.east - east);
+      return away + 0.85 * radar.range_m;
+    });
+    return Math.max(0, ...seen);
+  }
+
   static stamp(time_s) {
     return 1 + (Math.floor(time_s) % ROUNDS_S);
   }

@@ -132,11 +132,11 @@ function fit() {
   const here = own();
   const away = [...store.tracks.values(), ...store.ais.values()].map((one) => Math.hypot(one.north - here.north, one.east - here.east));
   for (const [north, east] of store.plots ?? []) away.push(Math.hypot(north - here.north, east - here.east));
-  const reach = echoes.range_m;
+  const reach = echoes.reach(placeOf(here), here);
   if (!away.length && !reach) return;
   away.sort((a, b) => a - b);
   const targets_m = away.length ? 1.4 * away[Math.floor(0.95 * (away.length - 1))] : 0;
-  view.fit(reach ? 0.85 * reach : targets_m, settings.units);
+  view.fit(reach || targets_m, settings.units);
   if (!chosen.has("vectorMinutes") && !given.has("vectorMinutes")) {
     settings.vectorMinutes = view.range_m < 2000 ? 1 : view.range_m < 6000 ? 3 : 6;
     applySettings();
@@ -212,20 +212,22 @@ function fillCard() {
   const here = store.ownAt(time_s);
   const place = store.at(track, time_s);
   const [north, east] = [place.north - here.north, place.east - here.east];
-  setText(title, track.name ? `${track.name} (${track.id})` : `Target ${track.id}`);
+  const called = store.nameOf(track);
+  setText(title, called ? `${called} (${track.id})` : `Target ${track.id}`);
   const rows = [
     ["Range, bearing", `${distance(Math.hypot(north, east), settings.units)}, ${angle(Math.atan2(east, north))}`],
     ["Speed, course", `${speed(Math.hypot(track.vnorth, track.veast), settings.units)}, ${angle(Math.atan2(track.veast, track.vnorth))}`],
   ];
   if (track.mode) rows.push(["Motion", track.mode]);
-  if (track.cpa !== null && track.cpa_time !== null) {
-    const ahead_s = track.cpa_time - time_s;
-    rows.push(["CPA to own ship", ahead_s >= 0 ? `${distance(track.cpa, settings.units)} in ${minutes(ahead_s)}` : "past"]);
-    if (ahead_s >= 0) rows.push([`Below ${store.limits ? distance(store.limits.cpa_limit_m, settings.units) : "the limit"}`, percent(track.probability)]);
+  const danger = store.encounters.find((one) => one.first === 0 && one.second === track.id);
+  if (danger || (track.cpa !== null && track.cpa_time !== null)) {
+    const [cpa_m, ahead_s, share] = danger ? [danger.cpa_m, danger.tcpa_s, danger.probability] : [track.cpa, track.cpa_time - time_s, track.probability];
+    rows.push(["CPA to own ship", ahead_s >= 0 ? `${distance(cpa_m, settings.units)} in ${minutes(ahead_s)}` : "past"]);
+    if (ahead_s >= 0) rows.push([`Below ${store.limits ? distance(store.limits.cpa_limit_m, settings.units) : "the limit"}`, percent(share)]);
   }
-  for (const danger of store.encounters.filter((one) => one.first !== 0 && (one.first === track.id || one.second === track.id)).slice(0, 2)) {
-    const other = danger.first === track.id ? danger.second : danger.first;
-    rows.push([`CPA to ${store.tracks.get(other)?.name || `target ${other}`}`, `${distance(danger.cpa_m, settings.units)} in ${minutes(danger.tcpa_s)}, ${percent(danger.probability)}`]);
+  for (const one of store.encounters.filter(({ first, second }) => first !== 0 && (first === track.id || second === track.id)).slice(0, 2)) {
+    const other = one.first === track.id ? one.second : one.first;
+    rows.push([`CPA to ${(store.tracks.has(other) && store.nameOf(store.tracks.get(other))) || `target ${other}`}`, `${distance(one.cpa_m, settings.units)} in ${minutes(one.tcpa_s)}, ${percent(one.probability)}`]);
   }
   if (track.major !== null) rows.push(["Position, 95 %", `± ${distance(2.4477 * track.major, settings.units === "nautical" && track.major < 200 ? "metric" : settings.units)}`]);
   if (track.identity) rows.push(["Identity", `${track.identity}${track.identity_probability === null ? "" : `, ${percent(track.identity_probability)}`}`]);

@@ -462,7 +462,7 @@ export class Overlay {
   linesOf(target) {
     const { settings } = this.scene;
     if (target.isAis) return [target.name || target.id];
-    const lines = [target.name ? target.name : String(target.id)];
+    const lines = [this.scene.store.nameOf(target) || String(target.id)];
     if (target.mode?.startsWith("turning")) lines.push(target.mode);
     if (target.danger && target.danger.tcpa_s >= 0) {
       lines.push(`CPA ${distance(target.danger.cpa_m, settings.units)} · ${percent(target.danger.probability)}`);
@@ -476,7 +476,7 @@ export class Overlay {
     const { palette, view, own, now_ms } = this.scene;
     const c = this.context;
     c.font = FONT;
-    const rank = (one) => (one.selected ? 0 : one.danger || one.alarmed ? 1 : one.isAis ? 4 : one.name ? 2 : 3);
+    const rank = (one) => (one.selected ? 0 : one.danger || one.alarmed ? 1 : one.isAis ? 4 : this.scene.store.nameOf(one) ? 2 : 3);
     const near = (one) => Math.hypot(one.x - this.own.x, one.y - this.own.y);
     const due = now_ms - this.labels_ms > LABELS_MS;
     const items = [];

@@ -69,15 +69,14 @@ export class Panel {
       const place = store.at(track, time_s);
       const [north, east] = [place.north - own.north, place.east - own.east];
       const danger = dangers.get(track.id) ?? null;
-      const other = danger && danger.first !== 0;
       return {
         track,
         danger,
         range_m: Math.hypot(north, east),
         bearing: Math.atan2(east, north),
-        cpa_m: other ? danger.cpa_m : track.cpa,
-        ahead_s: other ? danger.tcpa_s : track.cpa_time === null ? null : track.cpa_time - time_s,
-        probability: other ? danger.probability : track.probability,
+        cpa_m: danger ? danger.cpa_m : track.cpa,
+        ahead_s: danger ? danger.tcpa_s : track.cpa_time === null ? null : track.cpa_time - time_s,
+        probability: danger ? danger.probability : track.probability,
       };
     });
     const last = (value) => (value === null || value === undefined ? Infinity : value);
@@ -112,7 +111,7 @@ export class Panel {
       const past = one.ahead_s !== null && one.ahead_s < 0;
       const other = one.danger && one.danger.first !== 0 ? (one.danger.first === track.id ? one.danger.second : one.danger.first) : null;
       const figures = [
-        `${track.name ? track.name : track.id}${track.status === "coasting" ? " ·" : ""}`,
+        `${store.nameOf(track) || track.id}${track.status === "coasting" ? " ·" : ""}`,
         bare(distance(one.range_m, settings.units)),
         shortAngle(one.bearing),
         bare(speed(Math.hypot(track.vnorth, track.veast), settings.units)),
@@ -206,9 +205,11 @@ export class Panel {
     for (const [name, one] of Object.entries(status.inputs ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
       const problems = Object.values(one.problems ?? {}).reduce((sum, n) => sum + (Number(n?.count ?? n) || 0), 0);
+      const lost = one.lost_sweeps ? `, ${one.lost_sweeps} sweeps lost` : "";
       const bad = problems ? `, ${problems} unreadable` : "";
-      rows.push([name, `${Number.isFinite(age) ? `${age} s old` : "nothing received"}${bad}`, Number.isFinite(age) && age < 15 ? "good" : "bad"]);
+      rows.push([name, `${Number.isFinite(age) ? `${age} s old` : "nothing received"}${lost}${bad}`, Number.isFinite(age) && age < 15 ? "good" : "bad"]);
     }
+    if (status.late?.too_late_inputs) rows.push(["Late data", `${status.late.too_late_inputs} sectors, more than ${status.late.window_s} s`, "bad"]);
     for (const [name, one] of Object.entries(status.own ?? {})) {
       if (one?.source || one?.sources?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source ? "good" : "bad"]);
     }

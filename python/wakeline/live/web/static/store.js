@@ -113,6 +113,11 @@ export class Store {
     };
   }
 
+  /** What the operator calls a target, else the vessel that reports from it. */
+  nameOf(track) {
+    return track.name || (track.identity && this.ais.get(track.identity)?.name) || "";
+  }
+
   /** Dangerous encounters: those of own ship, or, ashore, of any two. */
   get dangers() {
     return this.own ? this.encounters.filter((one) => one.first === 0) : this.encounters;
