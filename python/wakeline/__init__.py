@@ -152,7 +152,7 @@ if _TYPE_CHECKING:
         study,
         tracking,
     )
-    from .tracking import track_recording
+    from .tracking import track_recording, tune
 
     __version__: str
 
@@ -246,6 +246,7 @@ __all__ = [
     "threads",
     "track_recording",
     "tracking",
+    "tune",
     "two_point",
     "vessel_imm",
     "wrap_angle",
@@ -270,7 +271,7 @@ _MODULES = {
     "study",
     "tracking",
 }
-_FUNCTIONS = {"track_recording": "tracking"}
+_FUNCTIONS = {"track_recording": "tracking", "tune": "tracking"}
 
 
 def _installed_version() -> str:

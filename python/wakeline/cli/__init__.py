@@ -29,6 +29,7 @@ _COMMANDS = {
     "live": "track what radars on the network send",
     "view": "show a session or tracks in the browser",
     "calibrate": "find the offsets of a radar from AIS or GNSS reports",
+    "tune": "find the errors of a radar, process noise and detection from plots alone",
     "navigate": "own ship's solution from an NMEA 0183 log or an IMU log",
     "search": "drift of an object and a search plan, from a scenario in TOML",
     "score": "score tracks against truth",

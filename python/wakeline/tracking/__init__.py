@@ -7,6 +7,7 @@
 1
 
 :func:`track_episode` tracks one episode, :func:`smooth_episode` smooths its tracks,
+:func:`tune` finds settings from plots alone,
 :func:`open_recording` opens a recording, and :class:`Settings` are the contents of a settings file.
 :func:`watch_tracks` finds the vessels that come dangerously close to each other or to own ship.
 :func:`wakeline.recording.scan_numbers` groups plots into scans.
@@ -37,6 +38,7 @@ from .tracked import (
     track_episode,
     track_recording,
 )
+from .tuning import TunedParameter, Tuning, tune
 
 __all__ = [
     "MODE_NAMES",
@@ -49,6 +51,8 @@ __all__ = [
     "SettingsError",
     "TrackedEpisode",
     "TrackedRecording",
+    "TunedParameter",
+    "Tuning",
     "Watched",
     "calibrate",
     "follow_video",
@@ -61,6 +65,7 @@ __all__ = [
     "smooth_episode",
     "track_episode",
     "track_recording",
+    "tune",
     "watch_tracks",
     "with_closest_approach",
     "write_tables",

@@ -1,0 +1,101 @@
+"""The plots of one track, and how a filter reads them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import wakeline as wl
+from wakeline.recording import Tracks
+
+from .tracked import TrackedEpisode
+
+
+def plot_sensor(radar: wl.Radar) -> wl.ConvertedRangeBearing:
+    """A sensor with the errors of the radar, for plots without its offsets."""
+    return wl.ConvertedRangeBearing(
+        range_std_m=radar.range_std_m,
+        bearing_std_rad=radar.bearing_std_rad,
+        extent_std_m=radar.extent_std_m,
+    )
+
+
+@dataclass(frozen=True)
+class TrackPlots:
+    """Plots of one track, sorted by time.
+
+    Attributes
+    ----------
+    time_s : ndarray (n,)
+    range_bearing : ndarray (n, 2)
+        Range in metres and bearing in radians.
+    own_m : ndarray (n, 2)
+        Own ship at the time of each plot, north and east.
+    """
+
+    time_s: np.ndarray
+    range_bearing: np.ndarray
+    own_m: np.ndarray
+
+    @classmethod
+    def of(cls, tracked: TrackedEpisode, track_id: int) -> TrackPlots:
+        """The plots that most probably belong to a track."""
+        times, readings, own = [np.zeros(0)], [np.zeros((0, 2))], [np.zeros((0, 2))]
+        for scan, ids in zip(tracked.episode.scans, tracked.plot_track_id, strict=True):
+            mine = np.asarray(ids) == track_id
+            times.append(scan.plot_time_s[mine])
+            readings.append(scan.range_bearing[mine])
+            own.append(np.column_stack([scan.own_north_m, scan.own_east_m])[mine])
+        plots = cls(np.concatenate(times), np.vstack(readings), np.vstack(own))
+        return plots.where(np.argsort(plots.time_s, kind="stable"))
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    def where(self, chosen: np.ndarray) -> TrackPlots:
+        """The chosen plots, by mask or by index."""
+        return TrackPlots(self.time_s[chosen], self.range_bearing[chosen], self.own_m[chosen])
+
+    @property
+    def position_m(self) -> np.ndarray:
+        """North and east, (n, 2)."""
+        range_m, bearing_rad = self.range_bearing.T
+        along = np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)])
+        return self.own_m + range_m[:, np.newaxis] * along
+
+    def covariance(self, radar: wl.Radar) -> np.ndarray:
+        """Of the positions with the errors of a radar, (n, 2, 2)."""
+        range_m, bearing_rad = self.range_bearing.T
+        cos, sin = np.cos(bearing_rad), np.sin(bearing_rad)
+        along_m = radar.range_std_m * np.column_stack([cos, sin])
+        across_m = (radar.bearing_std_rad * range_m)[:, np.newaxis] * np.column_stack([-sin, cos])
+        covariance = np.tile(radar.extent_std_m**2 * np.eye(2), (len(self), 1, 1))
+        for error_m in (along_m, across_m):
+            covariance += error_m[:, :, np.newaxis] * error_m[:, np.newaxis, :]
+        return covariance
+
+    def near(self, track: Tracks, radar: wl.Radar, probability: float) -> TrackPlots:
+        """The plots after the first row of the track that are inside the gate about its rows.
+
+        Parameters
+        ----------
+        track : Tracks
+            The rows of the track, by time.
+        radar : Radar
+            For the errors of the plots.
+        probability : float
+            That a plot of the track is inside.
+        """
+        after = np.searchsorted(track.time_s, self.time_s)
+        before = np.maximum(after - 1, 0)
+        after = np.minimum(after, len(track) - 1)
+        is_after = track.time_s[after] - self.time_s < self.time_s - track.time_s[before]
+        row = np.where(is_after, after, before)
+        ahead_s = (self.time_s - track.time_s[row])[:, np.newaxis]
+        expected_m = track.state[row][:, 0::2] + ahead_s * track.state[row][:, 1::2]
+        error_m = self.position_m - expected_m
+        covariance = track.covariance[row][:, 0::2, 0::2] + self.covariance(radar)
+        whitened = np.linalg.solve(covariance, error_m[:, :, np.newaxis])[:, :, 0]
+        inside = np.sum(error_m * whitened, axis=1) < wl.chi_square_quantile(probability, 2)
+        return self.where(inside & (self.time_s > track.time_s[0]))
