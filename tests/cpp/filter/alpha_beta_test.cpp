@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <vector>
 
 #include "filter/consistency_laws.hpp"
@@ -40,18 +40,25 @@ Filter started(const Filter& prototype) {
   return filter;
 }
 
-/// Value and derivatives at the last of n readings one second apart of the polynomial through them.
-template <int Order>
-Mat<double, Order, 2> polynomial(const std::vector<Vec<double, 2>>& readings) {
-  const auto n = Eigen::Index(readings.size());
-  Eigen::MatrixXd design(n, Order), values(n, 2);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double t = double(k - n + 1);
+/// Value and derivatives at the last of n readings one second apart of the polynomial through them,
+/// by least squares with the weights `weight(k)`.
+template <int Order, class Weight>
+Mat<double, Order, 2> polynomial(const std::vector<Vec<double, 2>>& readings,
+                                 const Weight& weight) {
+  const auto n = double(readings.size());
+  Mat<double, Order, Order> moments = Mat<double, Order, Order>::Zero();
+  Mat<double, Order, 2> products = Mat<double, Order, 2>::Zero();
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const double t = (double(k) + 1.0 - n) / n;
+    Vec<double, Order> powers;
     for (int power = 0; power < Order; ++power)
-      design(k, power) = std::pow(t, power) / (power < 2 ? 1 : 2);
-    values.row(k) = readings[std::size_t(k)].transpose();
+      powers[power] = std::pow(t, power) / (power < 2 ? 1 : 2);
+    moments += weight(k) * powers * powers.transpose();
+    products += weight(k) * powers * readings[k].transpose();
   }
-  return design.colPivHouseholderQr().solve(values);
+  Mat<double, Order, 2> solution = moments.llt().solve(products);
+  for (int power = 1; power < Order; ++power) solution.row(power) /= std::pow(n, power);
+  return solution;
 }
 
 template <int Order>
@@ -64,7 +71,8 @@ void expect_polynomial() {
     ASSERT_EQ(filter.predict(1.0), Status::kOk);
     ASSERT_TRUE(filter.update(kSensor, readings.back()));
     if (n < Order) continue;
-    const Mat<double, Order, 2> wanted = polynomial<Order>(readings);
+    const Mat<double, Order, 2> wanted =
+        polynomial<Order>(readings, [](std::size_t) { return 1.0; });
     Mat<double, Order, 2> actual;
     actual.col(0) = filter.estimate().mean.template head<Order>();
     actual.col(1) = filter.estimate().mean.template tail<Order>();
@@ -112,9 +120,19 @@ Mat<double, Order, Order> error_transition(const Vec<double, Order>& gains) {
   return rest * f;
 }
 
+/// By Gelfand: the norm of a high power, per factor.
 template <int Order>
 double spectral_radius(const Vec<double, Order>& gains) {
-  return error_transition<Order>(gains).eigenvalues().cwiseAbs().maxCoeff();
+  constexpr int kSquarings = 30;
+  Mat<double, Order, Order> power = error_transition<Order>(gains);
+  double log_scale = 0.0;
+  for (int k = 0; k < kSquarings; ++k) {
+    const double norm = power.norm();
+    if (norm == 0.0) return 0.0;
+    power = (power / norm).eval() * (power / norm).eval();
+    log_scale = 2.0 * (log_scale + std::log(norm));
+  }
+  return std::exp(std::ldexp(log_scale, -kSquarings));
 }
 
 TEST(StableGains, AreThoseWhoseErrorsDieOut) {
@@ -239,13 +257,8 @@ TEST(RecentMemory, IsTheLineWithWeightsThatGrow) {
     ASSERT_EQ(filter.predict(1.0), Status::kOk);
     ASSERT_TRUE(filter.update(kSensor, readings.back()));
     if (n < 2) continue;
-    Eigen::MatrixXd design(n, 2), values(n, 2);
-    for (int k = 0; k < n; ++k) {
-      const double root = std::sqrt(k + 1.0);
-      design.row(k) << root, root * double(k - n + 1);
-      values.row(k) = root * readings[std::size_t(k)].transpose();
-    }
-    const Mat<double, 2, 2> wanted = design.colPivHouseholderQr().solve(values);
+    const Mat<double, 2, 2> wanted =
+        polynomial<2>(readings, [](std::size_t k) { return double(k) + 1.0; });
     const auto& mean = filter.estimate().mean;
     const Mat<double, 2, 2> actual{{mean[0], mean[2]}, {mean[1], mean[3]}};
     ASSERT_TRUE(matrices_near(actual, wanted, {.absolute = 1e-9, .relative = 0})) << n;
