@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -60,8 +60,9 @@ Forecast forecast(const std::vector<double>& times, const std::vector<Vec<double
       design(k, power) = std::pow(times[plot] - now_s, power);
     values.row(k) = plots[plot].transpose();
   }
-  const Eigen::MatrixXd fit = design.colPivHouseholderQr().solve(values);
-  return {fit.row(0).transpose(), Eigen::MatrixXd((design.transpose() * design).inverse())(0, 0)};
+  const Eigen::MatrixXd factors = (design.transpose() * design).inverse();
+  const Eigen::MatrixXd fit = factors * (design.transpose() * values);
+  return {fit.row(0).transpose(), factors(0, 0)};
 }
 
 TEST(BayesianAlphaBeta, IsBayesRuleOverPolynomialForecasts) {
