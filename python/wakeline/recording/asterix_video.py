@@ -485,11 +485,19 @@ class _Scale:
     def range_m(self) -> float:
         return self.start_range_m + self.cells * self.cell_m
 
+    def is_of(self, sweep: _Sweep) -> bool:
+        """Whether the sweep has exactly these cells."""
+        return (
+            sweep.geometry == (self.start_range_m, self.cell_m)
+            and len(sweep.amplitude) == self.cells
+            and sweep.amplitude.dtype.itemsize == self.octets
+        )
 
-def _returns(sweeps: Iterable[_Sweep]) -> int:
+
+def _returns(scales: Iterable[_Scale]) -> int:
     """How often the range scale changes back to one that was sent before."""
-    scales = [scale for scale, _ in itertools.groupby(sweep.scale for sweep in sweeps)]
-    return len(scales) - len(set(scales))
+    changes = [scale for scale, _ in itertools.groupby(scales)]
+    return len(changes) - len(set(changes))
 
 
 def _turn_rad(before_rad: float, now_rad: float) -> float:
@@ -662,33 +670,35 @@ class _Order:
 
         A scale is sent in turn with another if that was sent shortly before and after the sweep.
         """
-        waiting: collections.deque[_Sweep] = collections.deque()
+        waiting: collections.deque[tuple[_Sweep, _Scale]] = collections.deque()
         coming: collections.Counter[_Scale] = collections.Counter()
         seen: dict[_Scale, int] = {}
+        scale: _Scale | None = None
         sweeps = iter(sweeps)
         for index in itertools.count():
             for sweep in itertools.islice(sweeps, _NEAR - len(waiting)):
-                waiting.append(sweep)
-                coming[sweep.scale] += 1
+                if scale is None or not scale.is_of(sweep):
+                    scale = sweep.scale
+                waiting.append((sweep, scale))
+                coming[scale] += 1
             if not waiting:
                 return
-            if index == 0 and _returns(waiting) > _MOST_RETURNS:
+            if index == 0 and _returns(scale for _, scale in waiting) > _MOST_RETURNS:
                 seen = dict.fromkeys(coming, 0)
             ends = len(waiting) < _NEAR and bool(self.report.other_scales)
-            sweep = waiting.popleft()
-            scale = sweep.scale
-            coming[scale] -= 1
-            seen[scale] = index
-            in_turn = [
+            sweep, its = waiting.popleft()
+            coming[its] -= 1
+            seen[its] = index
+            in_turn = len(seen) > 1 and [
                 other
                 for other, last in seen.items()
-                if other != scale
+                if other != its
                 and index - last < _NEAR
                 and (coming[other] or ends)
-                and self._prefers(other, scale)
+                and self._prefers(other, its)
             ]
             if in_turn:
-                self.report.other_scales[scale.range_m] += 1
+                self.report.other_scales[its.range_m] += 1
                 self.report.scale_m = max(in_turn, key=self._preference).range_m
             else:
                 yield sweep
