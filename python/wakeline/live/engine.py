@@ -196,9 +196,16 @@ class TrackEngine:
         """All shown tracks, at a time or at that of the last sector."""
         return list(self._rows(self._tracker.tracks(time_s=time_s, correct=False)))
 
+    def __len__(self) -> int:
+        return len(self.table())
+
+    def table(self) -> wl.track.TrackTable:
+        """The shown tracks as columns, at the time of the last sector."""
+        return self._tracker.tracks(correct=False)
+
     def updated(self) -> tuple[list[LiveTrack], list[int]]:
         """Tracks that were updated or corrected since the last call, and numbers that are gone."""
-        table = self._tracker.tracks(correct=False)
+        table = self.table()
         ids = np.array(table.track_id)
         update = np.column_stack([table.hits, table.misses, table.nis, table.existence])
         known_ids, known = self._known

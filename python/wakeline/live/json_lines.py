@@ -20,6 +20,8 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 VERSION = 1
@@ -146,19 +148,24 @@ _SEEN = ',"range_m":%.3f,"bearing_rad":%.7f'
 _CPA = ',"cpa":{"cpa_m":%.2f,"tcpa_s":%.2f,"probability":%.5f}'
 
 
+@lru_cache(maxsize=4096)
+def _quoted(text: str) -> str:
+    return _ENCODER.encode(text)
+
+
 def track_line(track: Mapping[str, Any], radar: str) -> bytes:
     """The line of a track as :meth:`Session.describe` has it; written once for many a second."""
     cpa = track.get("cpa")
     text = _TRACK % (
         track["track_id"],
         track["status"],
-        _ENCODER.encode(track["name"]),
+        _quoted(track["name"]),
         track["time_s"],
         track["north_m"],
         track["east_m"],
         track["vnorth_mps"],
         track["veast_mps"],
-        *(value for row in track["covariance"] for value in row),
+        *chain.from_iterable(track["covariance"]),
         track["course_rad"],
         track["speed_mps"],
         track["mode"],
@@ -166,13 +173,13 @@ def track_line(track: Mapping[str, Any], radar: str) -> bytes:
         track["existence"],
         track["hits"],
         track["misses"],
-        _ENCODER.encode(track["identity"]),
+        _quoted(track["identity"]),
         track["identity_probability"],
         "null" if track["identity_time_s"] is None else f"{track['identity_time_s']:.3f}",
         _PLACE % (track["latitude_deg"], track["longitude_deg"]) if "latitude_deg" in track else "",
         _SEEN % (track["range_m"], track["bearing_rad"]) if "range_m" in track else "",
         _CPA % (cpa["cpa_m"], cpa["tcpa_s"], cpa["probability"]) if cpa else "",
-        _ENCODER.encode(radar),
+        _quoted(radar),
     )
     if "nan" in text or "inf" in text:
         return write_line("track", {**track, "radar": radar})

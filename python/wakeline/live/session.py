@@ -734,7 +734,7 @@ class Session:
                     for name, feed in self.feeds.items()
                 },
                 "own": self.own.status(time_s, lambda n, e: self.to_degrees(n, e)),
-                "tracks": len(self.tracker.tracks()),
+                "tracks": len(self.tracker),
                 "ais_vessels": len(self.ais.vessels),
             }
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -107,7 +107,7 @@ class AlarmWatcher(AlarmBoard):
         known = hasattr(own, "north_m") and np.isfinite([own.vnorth_mps, own.veast_mps]).all()
         events = self.take(
             time_s,
-            columns(session.tracker.tracks(), lambda one: one.mean),
+            session.tracker.table(),
             own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
             heading_rad=own.heading_rad if hasattr(own, "heading_rad") else float("nan"),
             events=[SimpleNamespace(**one) for one in session.news],
@@ -134,18 +134,6 @@ def event_of(event: AlarmEvent) -> dict[str, Any]:
     """For JSON lines."""
     time_s, change, alarm = event
     return {"type": "alarm", "change": change, "time_s": time_s} | alarm.as_dict(time_s)
-
-
-def columns(tracks: Iterable[Any], mean_of: Any) -> SimpleNamespace:
-    """Tracks as columns, for :meth:`Alarms.update`."""
-    tracks = [one for one in tracks if one.track_id > 0]
-    return SimpleNamespace(
-        track_id=np.array([one.track_id for one in tracks], dtype=np.int64),
-        mean=np.array([mean_of(one) for one in tracks], dtype=float).reshape(-1, 4),
-        covariance=np.array([one.covariance for one in tracks], dtype=float).reshape(-1, 4, 4),
-        status=np.array([one.status for one in tracks], dtype=str),
-        name=np.array([one.name for one in tracks], dtype=str),
-    )
 
 
 def _sensors(session: Any, time_s: float) -> list[Sensor]:
