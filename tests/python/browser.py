@@ -13,6 +13,8 @@ import urllib.request
 _ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 _GL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 _NO_GL = ["--disable-gpu", "--disable-3d-apis"]
+_CATEGORIES = "devtools.timeline,disabled-by-default-devtools.timeline"
+_TRACE = {"enableNetwork": False, "enablePage": False, "traceCategories": _CATEGORIES}
 KEYS = {"Enter": "\ue007", "Escape": "\ue00c", "Right": "\ue014", "Down": "\ue015"}
 
 
@@ -38,9 +40,9 @@ class Driver:
                 return
         raise RuntimeError("chromedriver did not start")
 
-    def browser(self, width=1280, height=800, *, gl=True):
-        """A new browser whose page has the given size."""
-        return Browser(self.url, width, height, gl)
+    def browser(self, width=1280, height=800, *, gl=True, traces=False):
+        """A new browser whose page has the given size; `traced` needs one that traces."""
+        return Browser(self.url, width, height, gl, traces)
 
     def close(self):
         self._process.terminate()
@@ -51,7 +53,7 @@ class Driver:
 class Browser:
     """A browser with one page."""
 
-    def __init__(self, driver_url, width, height, gl):
+    def __init__(self, driver_url, width, height, gl, traces):
         arguments = [
             "--headless=new",
             "--no-sandbox",
@@ -70,6 +72,10 @@ class Browser:
                 }
             }
         }
+        if traces:
+            options = wanted["capabilities"]["alwaysMatch"]
+            options["goog:loggingPrefs"]["performance"] = "ALL"
+            options["goog:chromeOptions"]["perfLoggingPrefs"] = _TRACE
         self._url = driver_url
         self._session = ""
         self._session = "/session/" + self._call("POST", "/session", wanted)["sessionId"]
@@ -181,7 +187,29 @@ class Browser:
             str(value),
         )
 
+    def traced(self, seconds):
+        """Events (thread, name, ms of processor) of some seconds, but for those inside one of the
+        same name; leaves the page."""
+        self._log("performance")
+        time.sleep(seconds)
+        self._call("POST", "/url", {"url": "about:blank"})
+        messages = [json.loads(one["message"])["message"] for one in self._log("performance")]
+        events = [one["params"] for one in messages if one["method"] == "Tracing.dataCollected"]
+        thread = {
+            (one["pid"], one["tid"]): one["args"]["name"]
+            for one in events
+            if one["name"] == "thread_name"
+        }
+        ends = {}
+        for one in sorted((one for one in events if one["ph"] == "X"), key=lambda one: one["ts"]):
+            place, name = (one["pid"], one["tid"]), one["name"]
+            if one["ts"] >= ends.get((place, name), 0.0):
+                ends[place, name] = one["ts"] + one["dur"]
+                yield thread.get(place, ""), name, 1e-3 * one.get("tdur", 0.0)
+
+    def _log(self, kind):
+        return self._call("POST", "/se/log", {"type": kind})
+
     def errors(self):
         """Messages of errors that the page has logged."""
-        entries = self._call("POST", "/se/log", {"type": "browser"})
-        return [one["message"] for one in entries if one["level"] == "SEVERE"]
+        return [one["message"] for one in self._log("browser") if one["level"] == "SEVERE"]

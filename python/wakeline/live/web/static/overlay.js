@@ -103,8 +103,13 @@ export class Overlay {
     const made = this.written(text, color, font);
     const [width, height] = [made.width / this.ratio, made.height / this.ratio];
     const left = align === "left" ? x - TEXT_PX : x - width / 2;
-    const [px, py] = [left, y - height / 2].map((v) => Math.round(v * this.ratio) / this.ratio);
-    this.context.drawImage(made, px, py, width, height);
+    this.copy(made, left, y - height / 2);
+  }
+
+  /** Copies a picture to whole pixels, so that nothing is mixed. */
+  copy(made, x, y) {
+    const { ratio } = this;
+    this.context.drawImage(made, Math.round(x * ratio) / ratio, Math.round(y * ratio) / ratio, made.width / ratio, made.height / ratio);
   }
 
   write(c, text, x, y, color, font, align) {
@@ -283,7 +288,7 @@ export class Overlay {
         c.stroke();
       } else {
         const acquiring = target.status === "held" || target.status === "tentative";
-        c.drawImage(this.circle(palette.target, acquiring), x - CIRCLE_PX, y - CIRCLE_PX, 2 * CIRCLE_PX, 2 * CIRCLE_PX);
+        this.copy(this.circle(palette.target, acquiring), x - CIRCLE_PX, y - CIRCLE_PX);
       }
       if (target.identity) this.triangle(x, y, target, this.colorOf(target), 4);
     }
