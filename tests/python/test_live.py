@@ -25,6 +25,7 @@ from wakeline.wire import SensorClock
 
 HALO = Path(__file__).parents[1] / "data" / "halo_udp10110" / "udp10110.csv"
 JOYRIDE = {"name": "A", "range_std_m": 6.0, "bearing_std_deg": 0.3, "extent_std_m": 6.5}
+SMALL = {"max_tracks": 20, "max_plots": 200}
 HDT = SourceKey("HDT", "GP", "x")
 HDM = SourceKey("HDM", "GP", "x")
 
@@ -520,7 +521,7 @@ def test_no_octets_are_fatal(pieces):
         {"url": f"udp://127.0.0.1:1?name={kind or 'any'}", "format": kind}
         for kind in ("nmea", "json", "cat240", "spokes", "")
     ]
-    session = wl.live.Session({"input": inputs})
+    session = wl.live.Session({"input": inputs, "tracker": SMALL})
     for k, (kind, octets) in enumerate(pieces):
         session.feed(float(k), kind or "any", octets)
     json.dumps(session.picture(), allow_nan=False)
@@ -541,7 +542,7 @@ def test_no_octets_are_fatal(pieces):
     )
 )
 def test_no_json_is_fatal(line):
-    session = wl.live.Session()
+    session = wl.live.Session({"tracker": SMALL})
     session.feed(0.0, "x", json.dumps(line).encode())
     json.dumps(session.picture(), allow_nan=False)
 

@@ -455,7 +455,7 @@ def test_a_killed_process_goes_on_with_the_same_numbers(tmp_path):
             until(lambda process=process: "in 0/s" in process.stdout.readline(), 30.0)
             first = math.ceil((time.time() - begin_s) / 0.2)
             with socket.create_connection(("127.0.0.1", port)) as sender:
-                for k in range(first, first + 15):
+                for k in range(first, first + 8):
                     sender.sendall(turn(k, begin_s, 0.2)[1])
                     time.sleep(0.1)
                 last = f'"time_s":{begin_s + 0.2 * k:.6f}'

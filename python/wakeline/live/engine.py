@@ -16,7 +16,6 @@ from wakeline.tracking.settings import Settings
 
 _SILENT_TURNS = 2.5  # a sector that is a little late still comes before the miss
 _WINDOW_S = 10.0  # of late data, at least: what clocks of sensors may be off, both ways
-_ROOM = {"max_inputs": 20_000, "max_plots": 100_000}
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,7 @@ class TrackEngine:
     ) -> None:
         self.radars = list(radars)
         window_s = window_s or max(_WINDOW_S, 2.0 * max(one.period_s for one in radars))
-        self._tracker = settings.window_of(self.radars, window_s=window_s, **_ROOM)
+        self._tracker = settings.window_of(self.radars, window_s=window_s)
         self._last_s = [-math.inf] * len(self.radars)
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0
