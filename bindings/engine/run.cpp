@@ -275,6 +275,37 @@ void define_run_result(py::module_& m) {
                     "how many filters were stepped side by side in one register: recordings, or "
                     "hypotheses of a ModeHistory; 1 for one after the other")
       .def("__repr__", &result_text);
+  // Of optional libraries, which only Python knows.
+  const auto in_python = [](const char* function) {
+    return [function](const py::object& self, const py::object& time_s) {
+      return py::module_::import("wakeline._frames").attr(function)(self, time_s);
+    };
+  };
+  result
+      .def("to_pandas", in_python("run_table"), py::arg("time_s") = py::none(),
+           R"(A `pandas.DataFrame` with a row per scan, and per run where there are several.
+
+The index is the time of a scan, or its number without `time_s`, after the number of the run. The
+columns are mean_1 to mean_N, std_1 to std_N (of the state), mode_1 to mode_K, turn_rate_1 to
+turn_rate_K, innovation_1 to innovation_M, nis, log_likelihood and status.
+
+Raises
+------
+ImportError
+    When pandas is not installed.
+ValueError
+    When `time_s` does not have one time per scan.)")
+      .def("to_xarray", in_python("run_dataset"), py::arg("time_s") = py::none(),
+           R"(An `xarray.Dataset` of all arrays, with dimensions run, scan, state, mode and reading.
+
+The coordinate of scan is `time_s`, where given.
+
+Raises
+------
+ImportError
+    When xarray is not installed.
+ValueError
+    When `time_s` does not have one time per scan.)");
 }
 
 }  // namespace wakeline::python
