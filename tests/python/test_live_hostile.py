@@ -56,7 +56,10 @@ def test_a_leap_second_costs_no_track(repeats):
 
 @pytest.mark.parametrize("off_s", [3 * 3600.0, -12 * 3600.0, 4.0])
 def test_a_clock_that_is_off_from_the_start_costs_no_track(off_s):
-    check_tracks(*tracked(lambda t: t + off_s))
+    session, events = tracked(lambda t: t + off_s)
+    check_tracks(session, events)
+    corrected_s = session.status()["radars"]["A"]["clock_offset_s"]
+    assert corrected_s == (0.0 if off_s == 4.0 else pytest.approx(-off_s, abs=0.1))
 
 
 @pytest.mark.parametrize("off_s", [3 * 3600.0, -3 * 3600.0])

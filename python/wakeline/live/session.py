@@ -729,7 +729,7 @@ class Session:
                         "unused_plots": feed.unused,
                         "excluded_plots": feed.excluded,
                         "age_s": time_s - feed.last_s,
-                        "clock_offset_s": feed.clock.offset_s,
+                        "clock_offset_s": self._clock_offset_s(feed),
                     }
                     for name, feed in self.feeds.items()
                 },
@@ -738,6 +738,14 @@ class Session:
                 "ais_vessels": len(self.ais.vessels),
             }
         )
+
+    def _clock_offset_s(self, feed: RadarFeed) -> float:
+        """What is added to the times of a radar: of its lines, its messages, or its video."""
+        names = [feed.name] + [""] * (feed.name == self.config.radars[0].name)
+        clocks = [feed.clock]
+        for decoders in (self._shared.plots, self._shared.video):
+            clocks += [decoders[name].clock for name in names if name in decoders]
+        return max((clock.offset_s for clock in clocks), key=abs)
 
     def metrics(self) -> str:
         """The status as text for Prometheus."""

@@ -200,7 +200,8 @@ export class Panel {
     if (status.frozen) rows.push(["Own ship", status.frozen, "bad"]);
     for (const [name, one] of Object.entries(status.radars ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
-      rows.push([`Radar ${name}`, Number.isFinite(age) ? `${age} s old, ${one.plots} plots` : "nothing received", age > 10 || !Number.isFinite(age) ? "bad" : "good"]);
+      const off = Math.abs(one.clock_offset_s) > 0 ? `, its clock is ${minutes(Math.abs(one.clock_offset_s))} ${one.clock_offset_s > 0 ? "slow" : "fast"}` : "";
+      rows.push([`Radar ${name}`, Number.isFinite(age) ? `${age} s old, ${one.plots} plots${off}` : "nothing received", age > 10 || !Number.isFinite(age) ? "bad" : "good"]);
     }
     for (const [name, one] of Object.entries(status.inputs ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
