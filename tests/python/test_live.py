@@ -228,6 +228,18 @@ def test_plots_without_marks_are_grouped_by_the_period():
     assert len(session.tracker.tracks()) == 1
 
 
+def test_the_status_says_how_far_the_north_of_the_plane_is_off():
+    session = wl.live.Session({"session": {"origin_deg": [54.0, 10.0]}})
+    for t, (latitude, longitude) in enumerate([(54.0, 10.0), (55.0, 10.0), (54.0, 10.8)]):
+        own = {"latitude_deg": latitude, "longitude_deg": longitude}
+        session.feed(20.0 * t, "own", json.dumps({"own": own}).encode())
+        off_deg = session.status()["north_off_deg"]
+        north = np.array([session.to_plane(latitude + d, longitude) for d in (0.0, 1e-4)])
+        along = np.diff(north, axis=0)[0]
+        true_deg = -math.degrees(math.atan2(along[1], along[0]))
+        assert off_deg == pytest.approx(true_deg, abs=0.02)
+
+
 def test_without_a_position_tracks_are_frozen_and_the_operator_is_told():
     session = wl.live.Session()
     for t, line in joyride_lines(3):

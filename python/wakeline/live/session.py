@@ -720,6 +720,7 @@ class Session:
                 "frozen": self.frozen,
                 "lost_batches": self.lost,
                 "late": self.tracker.late,
+                "north_off_deg": self._north_off_deg(time_s),
                 "inputs": {name: one.status(time_s) for name, one in self.inputs.items()},
                 "outputs": {name: one.status() for name, one in self.outputs.items()},
                 "radars": {
@@ -738,6 +739,15 @@ class Session:
                 "ais_vessels": len(self.ais.vessels),
             }
         )
+
+    def _north_off_deg(self, time_s: float) -> float:
+        """How far the plane's north is from north at own ship, which grows away from the origin."""
+        pose = self.own.at(time_s)
+        if self.plane is None or isinstance(pose, Missing):
+            return 0.0
+        latitude_deg, longitude_deg = self.to_degrees(pose.north_m, pose.east_m)
+        along_deg = longitude_deg - math.degrees(self.plane.longitude_rad)
+        return ((along_deg + 180.0) % 360.0 - 180.0) * math.sin(math.radians(latitude_deg))
 
     def _clock_offset_s(self, feed: RadarFeed) -> float:
         """What is added to the times of a radar: of its lines, its messages, or its video."""

@@ -1,6 +1,7 @@
 // The panel beside the picture: alarms, targets by danger, zones, sources. Names are texts, never markup.
 import { TURN, distance, shortAngle, minutes, percent, speed, clock } from "./units.js";
 
+const FAR_DEG = 0.5; // of the plane's north from true north
 const MOST_ROWS = 150;
 const MOST_ENDED = 6;
 
@@ -197,6 +198,7 @@ export class Panel {
     const rows = [];
     const status = store.status ?? {};
     if (store.note) rows.push(["Picture", store.note, "bad"]);
+    if (Math.abs(status.north_off_deg) > FAR_DEG) rows.push(["Origin", `far away: north is off by ${Math.abs(status.north_off_deg).toFixed(1)}°; begin a new session`, "bad"]);
     if (status.frozen) rows.push(["Own ship", status.frozen, "bad"]);
     for (const [name, one] of Object.entries(status.radars ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
