@@ -252,8 +252,13 @@ class InputLog {
   InputLog(int max_inputs, int max_plots)
       : max_inputs_(static_cast<std::size_t>(max_inputs)),
         max_plots_(static_cast<std::size_t>(max_plots)) {
-    entries_.reserve(max_inputs_);
-    for (std::vector<Plot>* plots : {&plots_, &spare_}) plots->reserve(2 * max_plots_);
+    // Written once, so that a process has all memory from the start and not when it is first used.
+    entries_.resize(max_inputs_, Entry{});
+    entries_.clear();
+    for (std::vector<Plot>* plots : {&plots_, &spare_}) {
+      plots->resize(2 * max_plots_);
+      plots->clear();
+    }
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
