@@ -15,6 +15,7 @@ from wakeline.tracking import MODE_NAMES
 from wakeline.tracking.settings import Settings
 
 _SILENT_TURNS = 2.5  # a sector that is a little late still comes before the miss
+_SCANS = 2.5  # as large as a scan may be, of which the window has room for the plots
 _WINDOW_S = 10.0  # of late data, at least: what clocks of sensors may be off, both ways
 
 
@@ -98,7 +99,8 @@ class TrackEngine:
     ) -> None:
         self.radars = list(radars)
         window_s = window_s or max(_WINDOW_S, 2.0 * max(one.period_s for one in radars))
-        self._tracker = settings.window_of(self.radars, window_s=window_s)
+        plots = int(_SCANS * settings.tracker["max_plots"])
+        self._tracker = settings.window_of(self.radars, window_s=window_s, max_plots=plots)
         self._last_s = [-math.inf] * len(self.radars)
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0
