@@ -1,0 +1,235 @@
+"""Pages of the site made when it is built: the reference of Python, from the docstrings.
+
+A hook of MkDocs (`cpp/mkdocs.yml`). A public name without a docstring is a warning, and warnings
+are errors where the site is built.
+"""
+
+from __future__ import annotations
+
+import inspect
+import logging
+import posixpath
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+log = logging.getLogger("mkdocs.plugins.wakeline")
+
+# In the order of the site; the first ones are also at the top level of the package.
+ENGINE = (
+    "core",
+    "motion",
+    "measurement",
+    "filter",
+    "multimodel",
+    "gating",
+    "association",
+    "track",
+    "video",
+    "navigation",
+    "wire",
+    "batch",
+    "eval",
+)
+PACKAGES = (
+    "tracking",
+    "recording",
+    "metrics",
+    "montecarlo",
+    "scenario",
+    "plot",
+    "forecast",
+    "own_ship",
+    "search",
+    "extraction",
+    "live",
+)
+_SECTION = re.compile(r"^([A-Z][A-Za-z ]+)\n-{3,}\n", re.MULTILINE)
+_ROLE = re.compile(r":(?:class|func|meth|mod|attr):`~?([^`]+)`")
+_LINK = re.compile(r"\[([^\]]+)\]\(([^)\s:]+)\)")
+_LISTS = ("Parameters", "Attributes", "Returns", "Raises")
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Add the pages (an event of MkDocs)."""
+    from mkdocs.structure.files import File
+
+    for name, text in pages():
+        files.append(File.generated(config, f"api/{name}.md", content=text))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
+    """Keep only the text of links to files outside the documentation (an event of MkDocs)."""
+    folder = posixpath.dirname(page.file.src_uri)
+
+    def kept(link: re.Match[str]) -> str:
+        target = posixpath.normpath(posixpath.join(folder, link[2].partition("#")[0]))
+        return link[1] if target.startswith("../") else link[0]
+
+    return _LINK.sub(kept, markdown)
+
+
+def pages() -> Iterator[tuple[str, str]]:
+    """Name and text of each page."""
+    lines = [
+        "# Python\n\n`import wakeline as wl`. The names of the engine are also at the top level."
+    ]
+    for title, names in (("The engine", ENGINE), ("Recordings, studies, pictures", PACKAGES)):
+        lines.append(f"\n## {title}\n\n| module | |\n|---|---|")
+        for name in names:
+            about = first_sentence(import_module(f"wakeline.{name}").__doc__)
+            lines.append(f"| [`wakeline.{name}`]({name}.md) | {about} |")
+    yield "index", "\n".join(lines) + "\n"
+    for name in (*ENGINE, *PACKAGES):
+        yield name, "\n".join(page_of(import_module(f"wakeline.{name}"), name)) + "\n"
+
+
+def page_of(module: ModuleType, name: str) -> Iterator[str]:
+    """The lines of a module's page."""
+    yield f"# `wakeline.{name}`\n\n{as_markdown(module.__doc__ or '')}\n"
+    for public in public_names(module):
+        value = getattr(module, public)
+        if inspect.ismodule(value):
+            continue
+        yield f"\n## `{public}`\n"
+        if not (inspect.isclass(value) or callable(value)):
+            yield f"`{value!r}`\n" if len(repr(value)) < 200 else f"A `{type(value).__name__}`.\n"
+            continue
+        yield from described(value, f"wakeline.{name}.{public}", public)
+        if inspect.isclass(value):
+            yield from members_of(value, f"wakeline.{name}.{public}")
+
+
+def public_names(module: ModuleType) -> list[str]:
+    """The public names of a module, in its order."""
+    names = getattr(module, "__all__", None) or vars(module)
+    return [name for name in names if not name.startswith("_")]
+
+
+def members_of(kind: type, place: str) -> Iterator[str]:
+    """Fields that the docstring of a class does not list, then its methods; also of its bases."""
+    listed = set(re.findall(r"^(\w+(?:, \w+)*) : ", inspect.getdoc(kind) or "", re.MULTILINE))
+    listed = {name for names in listed for name in names.split(", ")}
+    methods = []
+    for name in sorted(dir(kind)):
+        owner = next((base for base in kind.__mro__ if name in vars(base)), object)
+        if name.startswith("_") or not owner.__module__.startswith("wakeline"):
+            continue
+        member = inspect.getattr_static(kind, name)
+        if isinstance(member, property):
+            about = as_markdown(inspect.getdoc(member) or "")
+            if name not in listed:
+                yield f"\n- **`{name}`**: {about}" if about else f"\n- **`{name}`**"
+        elif callable(getattr(kind, name)) and not inspect.isclass(getattr(kind, name)):
+            methods.append(name)
+    for name in methods:
+        yield f"\n### `{kind.__name__}.{name}`\n"
+        yield from described(getattr(kind, name), f"{place}.{name}", name)
+
+
+def described(value: Any, place: str, name: str) -> Iterator[str]:
+    """Signature and docstring of a function or class."""
+    text = inspect.getdoc(value) or ""
+    signature, text = signature_of(value, text, name)
+    if signature:
+        yield f"```python\n{signature}\n```\n"
+    if text.strip():
+        yield as_markdown(text) + "\n"
+    else:
+        log.warning("%s has no docstring", place)
+
+
+def signature_of(value: Any, text: str, name: str) -> tuple[str, str]:
+    """The call with names and defaults, and the docstring without it."""
+    if inspect.isclass(value):
+        made = vars(value).get("__init__")
+        first = (getattr(made, "__doc__", None) or "").partition("\n")[0]
+        if first.startswith("__init__("):
+            return f"{name}({', '.join(arguments_of(first))})", text
+    elif text.startswith(f"{name}("):
+        first, _, rest = text.partition("\n")
+        return f"{name}({', '.join(arguments_of(first))})", rest.strip()
+    try:
+        plain = inspect.signature(value)
+    except (ValueError, TypeError):
+        return "", text
+    arguments = [
+        str(one.replace(annotation=inspect.Parameter.empty))
+        for one in plain.parameters.values()
+        if one.name != "self"
+    ]
+    return f"{name}({', '.join(arguments)})", text
+
+
+def arguments_of(first: str) -> list[str]:
+    """Names and defaults in the first line of a docstring of the engine."""
+    inner = first[first.index("(") + 1 : _end_of_call(first) - 1]
+    parts, depth, begin = [], 0, 0
+    for k, sign in enumerate(inner + ","):
+        depth += (sign in "([{<") - (sign in ")]}>")
+        if sign == "," and depth <= 0:
+            parts.append(inner[begin:k].strip())
+            begin = k + 1
+    arguments = []
+    for part in filter(None, parts):
+        head, _, annotated = part.partition(":")
+        default = annotated.rpartition(" = ")[2] if " = " in annotated else ""
+        arguments.append(f"{head}={default}" if default else head)
+    return [one for one in arguments if one != "self"]
+
+
+def _end_of_call(first: str) -> int:
+    """Position after the parenthesis that ends the arguments."""
+    depth = 0
+    for k, sign in enumerate(first):
+        depth += (sign == "(") - (sign == ")")
+        if depth == 0 and sign == ")":
+            return k + 1
+    return len(first)
+
+
+def first_sentence(text: str | None) -> str:
+    """Of a docstring, for a table."""
+    about = " ".join((text or "").partition("\n\n")[0].split())
+    return _ROLE.sub(r"`\1`", about).replace("|", "\\|")
+
+
+def as_markdown(text: str) -> str:
+    """A docstring in the form of numpydoc as Markdown."""
+    pieces = _SECTION.split(_ROLE.sub(r"`\1`", inspect.cleandoc(text)).replace("``", "`"))
+    done = [with_code(pieces[0].strip())]
+    for title, body in zip(pieces[1::2], pieces[2::2], strict=True):
+        done.append(f"**{title}**\n")
+        done.append(as_list(body) if title in _LISTS else with_code(body.strip()))
+    return "\n\n".join(filter(None, done))
+
+
+def as_list(body: str) -> str:
+    """Names with what is indented below each."""
+    entries: list[tuple[str, list[str]]] = []
+    for line in body.strip().split("\n"):
+        if not line.startswith(" ") and line.strip():
+            entries.append((line.strip(), []))
+        elif entries:
+            entries[-1][1].append(line.strip())
+    lines = []
+    for head, about in entries:
+        name, _, kind = head.partition(" : ")
+        what = f"`{name}` ({kind})" if kind else f"`{name}`"
+        words = " ".join(filter(None, about))
+        lines.append(f"- {what}: {words}" if words else f"- {what}")
+    return "\n".join(lines)
+
+
+def with_code(text: str) -> str:
+    """Examples as blocks of code, and lines that are indented as such, too."""
+    blocks = []
+    for block in re.split(r"\n\s*\n", text):
+        if block.lstrip().startswith(">>>"):
+            blocks.append(f"```python\n{inspect.cleandoc(block)}\n```")
+        else:
+            blocks.append(re.sub(r"(?<!`)<([A-Za-z])", r"&lt;\1", block))
+    return "\n\n".join(blocks)
