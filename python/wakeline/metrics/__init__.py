@@ -5,7 +5,7 @@ States are ``[north, vnorth, east, veast]`` in metres and metres per second.
 
 from wakeline._engine.eval import SetDistance, nees, set_distance
 
-from .consistency import share_inside
+from .consistency import WindowedNis, share_inside, whiteness, windowed_nis
 from .curves import (
     SegmentFigures,
     by_segment,
@@ -29,6 +29,7 @@ __all__ = [
     "SetDistance",
     "Summary",
     "TargetScore",
+    "WindowedNis",
     "by_segment",
     "detection_delays_scans",
     "gospa",
@@ -41,4 +42,6 @@ __all__ = [
     "settling_times_s",
     "share_inside",
     "steady_scans",
+    "whiteness",
+    "windowed_nis",
 ]

@@ -1,11 +1,15 @@
-"""Consistency of errors and covariances over many runs."""
+"""Consistency of errors and covariances, over many runs and as one run goes on."""
 
 from __future__ import annotations
+
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from wakeline import eval
 from wakeline._checks import plain_numbers, real_numbers, whole_number
+from wakeline._engine.core import chi_square_quantile
 
 
 def share_inside(
@@ -52,3 +56,119 @@ def share_inside(
         inside |= (samples == count) & (curve >= lower) & (curve <= upper)
     counted = int(np.count_nonzero(samples > 0))
     return float(np.count_nonzero(inside)) / counted if counted else float("nan")
+
+
+@dataclass(frozen=True)
+class WindowedNis:
+    """Means of NIS over the last readings, with their chi-square bounds.
+
+    Attributes
+    ----------
+    mean : ndarray (..., T)
+        Of the last readings up to each scan; NaN before there are that many.
+    lower, upper : float
+        Bounds of the mean of a consistent estimator.
+    """
+
+    mean: np.ndarray
+    lower: float
+    upper: float
+
+    @property
+    def inside(self) -> np.ndarray:
+        """Whether each mean is within the bounds, (..., T)."""
+        return (self.mean >= self.lower) & (self.mean <= self.upper)
+
+
+def windowed_nis(
+    nis: np.ndarray, window: int = 20, *, dof: int = 2, confidence: float = 0.95
+) -> WindowedNis:
+    """Mean NIS of the last readings, to watch a filter or a track as it runs.
+
+    Above the bounds, errors are larger than reported: a maneuver, a wrong sensor, or too little
+    noise. Below them, the covariance is too large.
+
+    Parameters
+    ----------
+    nis : array_like (..., T)
+        Of `run`, or of one track (``tracks[track_id].nis``); scans without a reading are NaN, and
+        the last readings before them count.
+    window : int
+        Number of readings.
+    dof : int
+        Numbers in a reading.
+    confidence : float
+        Probability that the mean of a consistent estimator is within the bounds.
+
+    Raises
+    ------
+    ValueError
+        When window, dof or confidence is invalid.
+
+    References
+    ----------
+    Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to Tracking and
+    Navigation, 2001, section 5.4.
+    """
+    nis = np.atleast_1d(real_numbers("nis", nis))
+    plain_numbers(confidence=confidence)
+    whole_number("window", window, 1)
+    whole_number("dof", dof, 1)
+    lower, upper = eval.consistency_bounds(confidence, dof, window)
+    mean = np.full(nis.shape, np.nan)
+    for at in np.ndindex(nis.shape[:-1]):
+        known = np.flatnonzero(np.isfinite(nis[at]))
+        if len(known) < window:
+            continue
+        sums = np.convolve(nis[at][known], np.ones(window), mode="valid") / window
+        last = np.searchsorted(known, np.arange(nis.shape[-1]), side="right") - window
+        mean[at] = np.where(last >= 0, sums[np.maximum(last, 0)], np.nan)
+    return WindowedNis(mean, float(lower), float(upper))
+
+
+def whiteness(
+    innovation: np.ndarray, lag: int = 1, *, confidence: float = 0.95
+) -> tuple[float, float]:
+    """Autocorrelation of the innovations of one run, and its bound.
+
+    ``sum v_k . v_(k + lag) / sqrt(sum v_k . v_k  sum v_(k + lag) . v_(k + lag))`` over pairs of
+    readings; innovations of a filter with the right model are white, so that it is 0 but for
+    chance. Positive values are those of a filter that lags: too little process noise.
+
+    Parameters
+    ----------
+    innovation : array_like (T, M)
+        Of `run`; rows of scans without a reading are NaN. Divide components of different units by
+        their standard deviations.
+    lag : int
+        In scans.
+    confidence : float
+        Probability that the value of white innovations is within the bound.
+
+    Returns
+    -------
+    (value, bound)
+        From -1 to 1, and the bound of its amount. NaN without two readings that far apart.
+
+    Raises
+    ------
+    ValueError
+        When a shape does not fit, or lag or confidence is invalid.
+
+    References
+    ----------
+    As of :func:`windowed_nis`.
+    """
+    innovation = real_numbers("innovation", innovation)
+    if innovation.ndim != 2:
+        raise ValueError(f"innovation must have shape (T, M), got {innovation.shape}")
+    plain_numbers(confidence=confidence)
+    whole_number("lag", lag, 1)
+    first, second = innovation[:-lag], innovation[lag:]
+    both = np.isfinite(first).all(axis=1) & np.isfinite(second).all(axis=1)
+    first, second = first[both], second[both]
+    scale = math.sqrt(float(np.sum(first**2) * np.sum(second**2)))
+    if len(first) < 2 or scale == 0.0:
+        return math.nan, math.nan
+    bound = math.sqrt(chi_square_quantile(confidence, 1) / first.size)
+    return float(np.sum(first * second)) / scale, bound
