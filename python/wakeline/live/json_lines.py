@@ -57,6 +57,7 @@ _NEEDED = {
     "own": (),
     "report": ("source", "identity", "time_s"),
 }
+_PLAIN = frozenset((str, int, bool, type(None)))
 _decode = json.JSONDecoder().decode
 _ENCODER = json.JSONEncoder(separators=(",", ":"), allow_nan=False)
 _TEXTS = ("source", "identity", "name")
@@ -188,10 +189,12 @@ def track_line(track: Mapping[str, Any], radar: str) -> bytes:
 
 def finite_only(value: Any) -> Any:
     """A value for JSON, with null for numbers that are not finite."""
+    if type(value) in _PLAIN:
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
     if isinstance(value, Mapping):
         return {key: finite_only(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
         return [finite_only(each) for each in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
     return value

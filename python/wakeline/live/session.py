@@ -658,10 +658,7 @@ class Session:
             "origin_deg": self.origin_deg,
             "own": self._own_picture(time_s),
             "radars": [self._radar_picture(name, time_s) for name in self.radars],
-            "tracks": [
-                values | {"history": list(self._history.get(values["track_id"], ()))}
-                for values in tracks
-            ],
+            "tracks": tracks,
             "ais": [
                 self._vessel_picture(vessel, time_s) | {"track_id": track_of.get(str(vessel.mmsi))}
                 for vessel in self.ais.vessels.values()
@@ -672,7 +669,10 @@ class Session:
         }
         for watcher in self.watchers:
             picture |= watcher.picture(self)
-        return json_lines.finite_only(picture)
+        picture = json_lines.finite_only(picture)
+        for values in picture["tracks"]:  # of finite numbers, and many
+            values["history"] = list(self._history.get(values["track_id"], ()))
+        return picture
 
     def _shown_s(self, time_s: float) -> float | None:
         """The time of the tracks in the picture; None before the first sector."""
