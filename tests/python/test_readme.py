@@ -94,3 +94,9 @@ def test_what_each_part_of_the_tracker_is_worth(part):
             for score, number in zip(scores, numbers, strict=True):
                 last_digit = 10.0 ** -len(number.partition(".")[2])
                 assert abs(scale * score[key] - float(number)) < 0.6 * last_digit, (boats, figure)
+
+
+def test_the_citation_has_the_version_of_the_header():
+    header = (ROOT / "cpp/include/wakeline/core/version.hpp").read_text()
+    parts = [re.search(rf"_{part} (\d+)", header)[1] for part in ("MAJOR", "MINOR", "PATCH")]
+    assert f"\nversion: {'.'.join(parts)}\n" in (ROOT / "CITATION.cff").read_text()
