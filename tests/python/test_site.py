@@ -46,6 +46,13 @@ def test_parameters_are_a_list_and_examples_code():
     assert "----" not in text
 
 
+def test_every_example_is_shown():
+    text = site_pages.examples()
+    for file in (CPP.parent / "python/examples").glob("*.py"):
+        assert f"`{file.name}`" in text
+    assert "also in C++" in text
+
+
 def test_calls_of_the_engine_have_names_and_defaults():
     first = "run(self: a.b[c, d], z: X | None = None, n: int = 3, *, f: F = F(a=1, b=2)) -> None"
     assert site_pages.arguments_of(first) == ["z=None", "n=3", "*", "f=F(a=1, b=2)"]
