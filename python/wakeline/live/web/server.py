@@ -11,6 +11,7 @@ import asyncio
 import hmac
 import ipaddress
 import json
+import math
 import secrets
 import threading
 import time
@@ -105,7 +106,8 @@ class WebApp:
         self._signal_k = SignalK(self)
         self._changed = asyncio.Event()
         self._stopped = asyncio.Event()
-        self._taken_s = 0.0
+        self._one_at_a_time = asyncio.Lock()
+        self._taken_s = -math.inf
         self._taking: asyncio.Future[None] | None = None
         self._runner: web.AppRunner | None = None
 
@@ -148,6 +150,7 @@ class WebApp:
             raise
         self.port = self._runner.addresses[0][1]
         self._session.sweeps.append(self._take_sweeps)
+        await self.take_picture()
         self._taking = asyncio.ensure_future(self._take_pictures())
 
     async def close(self) -> None:
@@ -182,19 +185,20 @@ class WebApp:
 
     async def take_picture(self) -> None:
         """Take the picture now, if the last one is not of this moment."""
-        if time.monotonic() - self._taken_s < 0.5 * _PICTURE_S:
-            return
-        self._taken_s = time.monotonic()
-        try:
-            picture = await self._call(self._session.picture)
-            picture["radars"] = self._with_range(picture.get("radars", ()))
-            self._scene.take(picture)
-            self._signal_k.take(picture)
-        except Exception as error:  # noqa: BLE001 - the screen says it; tracking continues
-            note = f"no picture: {type(error).__name__}: {error}"
-            self._scene.take({"time_s": self._scene.time_s, "tracks": (), "note": note})
-        self._changed.set()
-        self._changed = asyncio.Event()
+        async with self._one_at_a_time:
+            if time.monotonic() - self._taken_s < 0.5 * _PICTURE_S:
+                return
+            self._taken_s = time.monotonic()
+            try:
+                picture = await self._call(self._session.picture)
+                picture["radars"] = self._with_range(picture.get("radars", ()))
+                self._scene.take(picture)
+                self._signal_k.take(picture)
+            except Exception as error:  # noqa: BLE001 - the screen says it; tracking continues
+                note = f"no picture: {type(error).__name__}: {error}"
+                self._scene.take({"time_s": self._scene.time_s, "tracks": (), "note": note})
+            self._changed.set()
+            self._changed = asyncio.Event()
 
     def image_of(self, radar: str) -> EchoImage | None:
         """Echoes of a radar; None if it has given no video."""
@@ -226,7 +230,7 @@ class WebApp:
             answer = await self._call(self._session.command, command)
         except Exception as error:  # noqa: BLE001
             answer = {"ok": False, "error": f"{type(error).__name__}: {error}"[:200]}
-        self._taken_s = 0.0
+        self._taken_s = -math.inf
         await self.take_picture()
         return answer
 
