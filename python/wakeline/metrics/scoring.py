@@ -138,8 +138,11 @@ class _EpisodeScorer:
         far = np.flatnonzero(~is_near)
         kept = is_near.copy()
         kept[far[_pairs_within(_NEAR_GATES * self.gate_m, truth_m, track_m[far])[1]]] = True
-        self.gospa.append(set_distance(truth_m, track_m, self.gate_m))
-        self.gospa_near.append(set_distance(truth_m, track_m[kept], self.gate_m))
+        gospa = set_distance(truth_m, track_m, self.gate_m)
+        self.gospa.append(gospa)
+        self.gospa_near.append(
+            gospa if kept.all() else set_distance(truth_m, track_m[kept], self.gate_m)
+        )
         other = self.last[here[target]] != numbers[track]
         cost_m = distance_m + self.bonus_m * other
         pairs = association.assign_sparse(
