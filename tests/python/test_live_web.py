@@ -539,6 +539,25 @@ def test_a_session_file_is_played_and_set_back(tmp_path, capsys):
     assert b'"type":"track"' in lines.read_bytes()
 
 
+def test_the_time_that_a_setting_takes_is_not_played():
+    player = recorded_plots()
+    go_to, wanted_s = player.go_to, player.start_s + 100.0
+
+    def slow(time_s):
+        go_to(time_s)
+        if time_s == wanted_s:
+            time.sleep(1.0)
+
+    player.go_to = slow
+    player.start()
+    try:
+        assert player.command({"command": "replay", "time_s": wanted_s})["ok"]
+        time.sleep(0.25)
+        assert 0.0 < player.time_s - wanted_s < 0.9
+    finally:
+        player.close()
+
+
 def test_no_target_is_acquired_in_an_exclusion_zone():
     player = recorded_plots()
     around = [[-1e5, -1e5], [-1e5, 1e5], [1e5, 1e5], [1e5, -1e5]]

@@ -30,6 +30,7 @@ from .zones import Zone, Zones
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _TICK_S = 0.1
+_MOST_STEP_S = 1.0  # that are played at once, so that a slow machine still answers
 _SNAPSHOT_S, _MOST_SNAPSHOTS = 30.0, 100
 _HISTORY = 60
 _HISTORY_S = 5.0
@@ -93,6 +94,7 @@ class Player:
         self.speed, self.paused = _speed(speed), False
         self.sweeps: list[Callable[..., None]] = []
         self.lock = threading.RLock()
+        self._played_s = time.monotonic()
         self._thread: threading.Thread | None = None
         self._stopped = threading.Event()
 
@@ -109,13 +111,14 @@ class Player:
             self._thread.join()
 
     def _play(self) -> None:
-        last_s = time.monotonic()
+        self._played_s = time.monotonic()
         while not self._stopped.wait(_TICK_S):
-            now_s = time.monotonic()
             with self.lock:
+                now_s = time.monotonic()
+                passed_s = min(now_s - self._played_s, _MOST_STEP_S)
+                self._played_s = now_s
                 if not self.paused:
-                    self.go_to(self.time_s + (now_s - last_s) * self.speed)
-            last_s = now_s
+                    self.go_to(self.time_s + passed_s * self.speed)
 
     def go_to(self, time_s: float) -> None:
         """Set the time, forward or back, within the recording."""
@@ -162,6 +165,7 @@ class Player:
             if not math.isfinite(wanted_s):
                 raise ValueError("time_s must be finite")
             self.go_to(wanted_s)
+            self._played_s = time.monotonic()  # what this took is not played
         return {"ok": True}
 
     def replay_picture(self) -> dict[str, Any]:
