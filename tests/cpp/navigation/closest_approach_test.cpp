@@ -274,6 +274,29 @@ TEST(ProbabilityOfPassing, IsThatOfManyDrawsForTargetsOfAnyKind) {
   EXPECT_LT(std::sqrt(sum2 / kTargets), 0.006);
 }
 
+TEST(ProbabilityOfPassing, AtTheLimitIsThatOfManyDrawsHoweverManyDirectionsAreSummed) {
+  test::Draw draw(16);
+  constexpr int kTargets = 40;
+  for (const double sigmas : {7.0, 14.0, 40.0}) {  // of the velocity
+    double sum2 = 0.0;
+    for (int k = 0; k < kTargets; ++k) {
+      const double limit_m = draw.uniform(100, 2000), position_std = draw.uniform(2, 60);
+      const double velocity_std = draw.uniform(0.05, 0.4), sight = draw.uniform(-4, 4);
+      const double range_m = limit_m + draw.uniform(-4, 4) * position_std;
+      Gaussian<4> relative{
+          state(polar(range_m, sight), polar(sigmas * velocity_std, draw.uniform(-4, 4))),
+          errors(position_std, velocity_std)};
+      for (const int axis : {0, 2})  // of a track
+        relative.covariance(axis, axis + 1) = relative.covariance(axis + 1, axis) =
+            0.5 * position_std * velocity_std;
+      const double error = probability_error(relative, limit_m, draw.uniform(5, 1200));
+      EXPECT_LT(error, 0.03) << sigmas << " " << k;
+      sum2 += error * error;
+    }
+    EXPECT_LT(std::sqrt(sum2 / kTargets), 0.006) << sigmas;
+  }
+}
+
 // Of a target at rest, seen at the same velocity in all directions, those come in that head for the
 // disc: arcsin(L / R) / pi of all, and by a horizon H those of them that are fast enough.
 TEST(ProbabilityOfPassing, IsTheShareOfHeadingsForATargetAtRest) {

@@ -92,14 +92,15 @@ class ClosestApproach {
 
   /// Probability that the ships come closer than `limit_m` between now and `horizon_s`, both not
   /// negative, the horizon possibly infinite: that |p + v t| < L at some t, 0 <= t <= H, p and v of
-  /// their joint Gaussian. The part that is outside now and enters later is summed over 32
-  /// directions of v, with errors to first order about each, so it is accurate near relative rest
-  /// too. Two ships known to be at rest keep their distance.
+  /// their joint Gaussian. The part that is outside now and enters later is summed over directions
+  /// of v, with errors to first order about each, so it is accurate near relative rest too: 32
+  /// directions, 8 where |v| is 5 of its standard deviations, one where it is 12; twice as many for
+  /// a target at the limit now. Two ships known to be at rest keep their distance.
   ///
   /// Compared with Monte Carlo, the RMS error is 0.004; errors above 0.02 occur in one of thirty
   /// cases with the target now within a tenth of the limit. The largest error is 0.08, except that
   /// a target of known position less than a hundredth outside the limit can have up to 0.15 too
-  /// little. Takes ten microseconds.
+  /// little. Takes 0.5 microseconds with one direction, ten with 32.
   [[nodiscard]] double probability(double limit_m, double horizon_s = kForever_s) const noexcept {
     if (!is_finite(mean_) || !is_finite(state_covariance_) || std::isnan(limit_m) ||
         std::isnan(horizon_s))

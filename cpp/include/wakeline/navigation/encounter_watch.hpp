@@ -151,6 +151,7 @@ class EncounterWatch {
     const auto vessels = static_cast<std::size_t>(max_vessels), pairs = kPairsPerVessel * vessels;
     bodies_.reserve(vessels);
     by_id_.reserve(vessels);
+    approaching_.resize(vessels);
     approaches_.reserve(pairs);
     encounters_.reserve(pairs);
     followed_.reserve(pairs);
@@ -244,6 +245,7 @@ class EncounterWatch {
     double position_m2, velocity_m2s2;  ///< largest variances of all directions
     double speed_mps, speed_std_mps;    ///< over ground; the error of the worst direction
     bool rests;                         ///< perhaps, by the smallest of all rest speeds
+    int known;  ///< the first encounter of a pair of which it has the smaller number
     const WatchedVessel* vessel;
   };
 
@@ -260,7 +262,7 @@ class EncounterWatch {
 
     /// Whether the closest point is ahead, and within a time.
     [[nodiscard]] bool is_ahead(double limit_s) const noexcept {
-      return closing >= 0.0 && closing <= limit_s * speed2;
+      return (closing >= 0.0) & (closing <= limit_s * speed2);
     }
   };
 
@@ -307,18 +309,39 @@ class EncounterWatch {
     std::iota(by_id_.begin(), by_id_.end(), 0);
     std::sort(by_id_.begin(), by_id_.end(),
               [&](int a, int b) { return body_at(a).vessel->id < body_at(b).vessel->id; });
+    int known = 0;
+    for (const int k : by_id_) {
+      Body& body = bodies_[static_cast<std::size_t>(k)];
+      while (known < std::ssize(encounters_) &&
+             encounter_at(known).approach.first < body.vessel->id)
+        ++known;
+      body.known = known;
+    }
     return static_cast<int>(vessels.size() - bodies_.size());
   }
 
   /// Calls `f(a, b)` once for each pair of vessels that may come close: of the boxes that begin
-  /// before another ends, from west to east, those that meet it in north, too.
+  /// before another ends, from west to east, those that approach it.
   template <class Function>
   void for_each_close_pair(const Function& f) noexcept {
-    for (auto a = bodies_.begin(); a != bodies_.end(); ++a)
-      for (auto b = a + 1; b != bodies_.end() && b->low_m[1] <= a->high_m[1]; ++b)
-        if (b->low_m[0] <= a->high_m[0] && a->low_m[0] <= b->high_m[0] && !(a->rests && b->rests) &&
-            can_come_close(*a, *b))
-          f(*a, *b);
+    for (auto a = bodies_.begin(); a != bodies_.end(); ++a) {
+      auto end = approaching_.begin();
+      for (auto b = a + 1; b != bodies_.end() && b->low_m[1] <= a->high_m[1]; ++b) {
+        *end = &*b;
+        end += come_closer(*a, *b);
+      }
+      for (auto b = approaching_.begin(); b != end; ++b)
+        if (can_come_close(*a, **b)) f(*a, **b);
+    }
+  }
+
+  /// Whether boxes meet in north, and the vessels come closer. Without branches, for there are many
+  /// pairs.
+  [[nodiscard]] bool come_closer(const Body& a, const Body& b) const noexcept {
+    const bool south = a.low_m[0] <= b.high_m[0], north = b.low_m[0] <= a.high_m[0];
+    const bool ahead = RelativeMotion(a, b).is_ahead(widest_.tcpa_limit_s);
+    const bool rest = a.rests & b.rests;
+    return south & north & ahead & !rest;
   }
 
   /// Whether errors below k standard deviations can bring two vessels to the limit: whether
@@ -327,7 +350,6 @@ class EncounterWatch {
   [[nodiscard]] bool can_come_close(const Body& a, const Body& b) const noexcept {
     const double horizon_s = widest_.tcpa_limit_s;
     const RelativeMotion motion(a, b);
-    if (!motion.is_ahead(horizon_s)) return false;
     const double error_m = sigmas_ * std::sqrt(a.position_m2 + b.position_m2);
     const double drift_mps = sigmas_ * std::sqrt(a.velocity_m2s2 + b.velocity_m2s2);
     const double reach_m = widest_.cpa_limit_m + error_m;
@@ -402,7 +424,7 @@ class EncounterWatch {
 
   /// Lists the approach of two vessels where it can matter; follows their encounter, or begins one.
   void assess(const Body& a, const Body& b) noexcept {
-    const int known = find(a.vessel->id, b.vessel->id);
+    const int known = find(a, b);
     const int zone = known < 0 ? zone_of(a, b) : encounter_at(known).approach.zone;
     const DangerLimits& limits = limits_of(zone);
     const bool matters = can_matter(a, b, limits);
@@ -467,15 +489,19 @@ class EncounterWatch {
     }
   }
 
-  /// Numbers the encounters that have begun.
+  /// Numbers the encounters that have begun, and moves them to their places among the others.
   void number_new() noexcept {
-    if (encounters_.size() == followed_.size()) return;
-    std::sort(encounters_.begin(), encounters_.end(),
+    auto older = encounters_.begin() + std::ssize(followed_), to = encounters_.end();
+    std::sort(older, to,
               [](const Encounter& a, const Encounter& b) { return pair_of(a) < pair_of(b); });
-    for (Encounter& one : encounters_) {
-      if (one.id != 0) continue;
-      one.id = next_id_++;
-      events_.push_back({EncounterChange::kBegan, one});
+    for (auto one = older; one != to; ++one) {
+      one->id = next_id_++;
+      events_.push_back({EncounterChange::kBegan, *one});
+    }
+    for (auto event = events_.rbegin(); event != events_.rend(); ++event) {
+      const Encounter& one = event->encounter;
+      while (older != encounters_.begin() && pair_of(one) < pair_of(*(older - 1))) *--to = *--older;
+      *--to = one;
     }
   }
 
@@ -495,14 +521,14 @@ class EncounterWatch {
   }
 
   /// The encounter of two vessels that was there before this update, or -1.
-  [[nodiscard]] int find(std::int64_t a, std::int64_t b) const noexcept {
-    const std::pair pair(std::min(a, b), std::max(a, b));
-    const auto end = encounters_.begin() + std::ssize(followed_);
-    const auto found =
-        std::lower_bound(encounters_.begin(), end, pair,
-                         [](const Encounter& one, const auto& p) { return pair_of(one) < p; });
-    const bool there = found != end && pair_of(*found) == pair;
-    return there ? static_cast<int>(found - encounters_.begin()) : -1;
+  [[nodiscard]] int find(const Body& a, const Body& b) const noexcept {
+    if (b.vessel->id < a.vessel->id) return find(b, a);
+    for (int k = a.known; k < std::ssize(followed_); ++k) {
+      const auto& [first, second] = pair_of(encounters_[static_cast<std::size_t>(k)]);
+      if (first != a.vessel->id || second > b.vessel->id) break;
+      if (second == b.vessel->id) return k;
+    }
+    return -1;
   }
 
   /// The vessel of that number in this update, or null.
@@ -559,6 +585,7 @@ class EncounterWatch {
   // Of this update
   std::vector<Body> bodies_;  ///< from west to east
   std::vector<int> by_id_;
+  std::vector<const Body*> approaching_;  ///< room for those that approach one vessel
   std::vector<char> followed_;
   std::vector<Approach> approaches_;
   std::vector<EncounterEvent> events_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -37,7 +38,10 @@ struct StandardNormal {
   }
 };
 
-inline double normal_below(double z) noexcept { return std::erfc(-z / std::numbers::sqrt2) / 2; }
+inline double normal_below(double z) noexcept {
+  constexpr double kSure = 5.2;  // the rest is 1e-7
+  return z > kSure ? 1.0 : z < -kSure ? 0.0 : std::erfc(-z / std::numbers::sqrt2) / 2;
+}
 
 /// A nearly Gaussian variable with skewness, conditional on the offset of another one from its
 /// mean: mean + slope off + curve off² + std Z.
@@ -121,7 +125,10 @@ struct Length {
   static double zeroth(double a) noexcept {
     return std::sqrt(2.0 * std::numbers::pi) * normal_below(a);
   }
-  static double first(double a) noexcept { return std::exp(-0.5 * a * a) + a * zeroth(a); }
+  static double first(double a) noexcept {
+    constexpr double kFar = 6.0;  // the other term is relatively less than 1e-8
+    return (a > kFar ? 0.0 : std::exp(-0.5 * a * a)) + a * zeroth(a);
+  }
 };
 
 constexpr double kRest_mps = 1e-6;  ///< smallest relative speed of a moving target
@@ -132,9 +139,13 @@ struct PrincipalAxes {
   Vec<double, 2> std;
 
   explicit PrincipalAxes(const Mat<double, 2, 2>& covariance) noexcept {
-    const double turned =
-        std::atan2(2.0 * covariance(1, 0), covariance(0, 0) - covariance(1, 1)) / 2;
-    axes << std::cos(turned), -std::sin(turned), std::sin(turned), std::cos(turned);
+    const double across = covariance(0, 0) - covariance(1, 1), twice = 2.0 * covariance(1, 0);
+    const double size = std::sqrt(across * across + twice * twice);  // at the doubled angle
+    const double larger = size > 0.0 ? std::sqrt((1.0 + std::abs(across) / size) / 2.0) : 1.0;
+    const double smaller = size > 0.0 ? twice / (2.0 * size * larger) : 0.0;
+    Vec<double, 2> longer(larger, smaller);
+    if (across < 0.0) longer = {smaller, larger};
+    axes << longer[0], -longer[1], longer[1], longer[0];
     for (const int k : {0, 1}) {
       const Vec<double, 2> axis = axes.col(k);
       std[k] = std::sqrt(std::max(axis.dot(covariance * axis), 0.0));
@@ -178,8 +189,7 @@ class PassingProbability {
     if (!moves_) return;
     const PrincipalAxes ellipse(velocity);
     const Vec2 std = ellipse.std.cwiseMax(kLeastError * std::sqrt(size2));
-    const double sigmas = velocity_mps.norm() / std[0];
-    directions_ = sigmas > kKnown ? 1 : sigmas > kFairlyKnown ? kFewDirections : kDirections;
+    sigmas_ = velocity_mps.norm() / std[0];
     root_ = ellipse.axes * std.asDiagonal();
     const Vec2 inverse = std.cwiseInverse();
     whitened_ = inverse.asDiagonal() * (ellipse.axes.transpose() * velocity_mps);
@@ -187,18 +197,24 @@ class PassingProbability {
     rest_ = position_covariance_ - by_velocity_ * by_velocity_.transpose();
   }
 
-  /// Sum of `now` and `later`.
   [[nodiscard]] double operator()(double limit_m, double horizon_s) const noexcept {
     if (std::isinf(limit_m)) return limit_m > 0.0 ? 1.0 : 0.0;
     const double outside_m = position_m_.norm() - limit_m;
     const double certain_m = kCertain * std::sqrt(largest_variance(position_covariance_));
     if (outside_m < -certain_m) return 1.0;
     const bool outside = outside_m > certain_m;
-    const double now =
-        outside ? 0.0 : probability_within(limit_m, position_m_, position_covariance_);
+    const double sigmas = outside ? sigmas_ : sigmas_ / kAtLimit;
+    const int directions = sigmas > kKnown         ? 1
+                           : sigmas > kFairlyKnown ? kFewDirections
+                                                   : kDirections;
+    const int least = directions == 1 ? kManySlices : kFewSlices;
+    const int slices = outside || directions == kDirections ? least : 2 * least;
+    const Start start = directions == 1 ? Start::kAnywhere : Start::kOutside;
+    const double now = outside || start == Start::kAnywhere
+                           ? 0.0
+                           : probability_within(limit_m, position_m_, position_covariance_);
     if (!moves_) return now;
-    const int directions = outside ? directions_ : kDirections;
-    return std::min(now + later(limit_m, horizon_s, directions), 1.0);
+    return std::min(now + along(directions, slices, start, limit_m, horizon_s), 1.0);
   }
 
  private:
@@ -206,25 +222,36 @@ class PassingProbability {
   using Mat2 = Mat<double, 2, 2>;
 
   static constexpr int kDirections = 32;
-  static constexpr int kFewDirections = 12;
+  static constexpr int kFewDirections = 8;
   static constexpr double kKnown = 12.0;       ///< sigmas of a velocity of one direction
   static constexpr double kFairlyKnown = 5.0;  ///< and of one of few directions
+  static constexpr double kAtLimit = 2.0;      ///< times as many for a target at the limit now
   static constexpr double kCertain = 4.5;      ///< sigmas beyond which nothing is expected
   static constexpr double kLeastError = 1e-8;  ///< relative to a velocity without error
-  static constexpr double kSpread = 0.4;       ///< spread of directions, relative to their spacing
+  static constexpr double kSpread = 0.4;       ///< of a direction, relative to their spacing
+  static constexpr double kFewSpread = 0.5;    ///< of one of few
+  static constexpr double kWidest = 4.0;       ///< of all directions, in sigmas
+  static constexpr double kFewWidest = 3.6;    ///< of few
 
-  /// The probability to be outside now and to enter later, summed over directions of the velocity.
-  [[nodiscard]] double later(double limit_m, double horizon_s, int directions) const noexcept {
+  /// Which targets are summed along directions: of several directions, those that are inside now
+  /// are summed apart.
+  enum class Start : std::uint8_t { kAnywhere, kOutside };
+
+  /// The probability to start there and to be inside at some time, summed over directions of the
+  /// velocity.
+  [[nodiscard]] double along(int directions, int slices, Start start, double limit_m,
+                             double horizon_s) const noexcept {
     const double distance = whitened_.norm();
     const Vec2 ahead = distance > 0.0 ? Vec2(whitened_ / distance) : Vec2(1.0, 0.0);
     const Vec2 aside(-ahead[1], ahead[0]);
     if (directions == 1)
-      return towards(ahead, aside, Length(distance, distance, 1.0, 0.0), 1.0 / distance,
-                     kManySlices, 0.5, limit_m, horizon_s);
+      return towards(ahead, aside, Length(distance, distance, 1.0, 0.0), 1.0 / distance, slices,
+                     0.5, start, limit_m, horizon_s);
     const double half_turn = std::numbers::pi;
-    const double widest =
-        distance > 0.0 ? std::min(4.0 / distance * (1.0 + 1.0 / distance), half_turn) : half_turn;
-    const double step = 2.0 * widest / directions, spread = kSpread * step;
+    const bool few = directions == kFewDirections;
+    const double sigmas = (few ? kFewWidest : kWidest) * (1.0 + 1.0 / distance);
+    const double widest = distance > 0.0 ? std::min(sigmas / distance, half_turn) : half_turn;
+    const double step = 2.0 * widest / directions, spread = (few ? kFewSpread : kSpread) * step;
     const double blurred = std::min(spread * distance, 0.7);
     const double narrowed = distance / std::sqrt(1.0 - blurred * blurred);
     double sum = 0.0, weights = 0.0;
@@ -233,7 +260,7 @@ class PassingProbability {
       if (distance * c < -5.0) continue;  // probability below one in a million
       const Length length(distance, narrowed, c, s);
       sum += length.weight * towards(c * ahead + s * aside, c * aside - s * ahead, length, spread,
-                                     kFewSlices, stagger(k), limit_m, horizon_s);
+                                     slices, stagger(k), start, limit_m, horizon_s);
       weights += length.weight;
     }
     return sum / weights;
@@ -254,14 +281,16 @@ class PassingProbability {
 
   /// The same for a direction ψ with the spread `spread`. With n the unit vector to starboard of
   /// the velocity |v| u, d = p·n, s = -p·u the distance to go and h² = L² - d² half the chord, it
-  /// enters where |d| < L, s > h and s - |v| H < h:
+  /// is inside where |d| < L, s > -h and s - |v| H < h:
   ///
-  ///     ∫ (P(s - |v| H < h, given d) - P(s < h, given d)) p(d) dd,    -L < d < L.
+  ///     ∫ (P(s - |v| H < h, given d) - P(s < -h, given d)) p(d) dd,    -L < d < L;
+  ///
+  /// from outside, s > h.
   ///
   /// First order in the errors, second order in the direction.
   [[nodiscard]] double towards(const Vec2& c, const Vec2& by_psi, const Length& length,
-                               double spread, int slices, double stagger, double limit_m,
-                               double horizon_s) const noexcept {
+                               double spread, int slices, double stagger, Start start,
+                               double limit_m, double horizon_s) const noexcept {
     const bool ever = horizon_s > kLargestInput;
     const double reach_s = ever ? 0.0 : horizon_s;
     const double length_std = std::sqrt(length.variance), aside = length.mean * spread;
@@ -287,8 +316,8 @@ class PassingProbability {
     const double left = to_go - speed_mps * reach_s;
     const double left_certain = kCertain * std::sqrt(squared(of_left) + along_variance);
     if (!ever && left - limit_m > left_certain) return 0.0;  // too far to come in time
-    if (to_go - limit_m > kCertain * std::sqrt(squared(of_to_go) + along_variance) &&
-        (ever || left < -left_certain))  // outside now, and past the closest point in time
+    const bool outside = to_go - limit_m > kCertain * std::sqrt(squared(of_to_go) + along_variance);
+    if (outside && (ever || left < -left_certain))  // past the closest point in time
       return within_limit(limit_m, d, std::sqrt(d_variance));
     const double arc = to_go * turn_rad * turn_rad / 2.0;
     const auto given_d = [&](double mean, const Ways& of) noexcept {
@@ -313,7 +342,9 @@ class PassingProbability {
           const Slices from_mean = x - d;
           const Slices in_time =
               ever ? Slices(1.0) : way_left.probability_below(half_chord_m, from_mean);
-          return max(in_time - way.probability_below(half_chord_m, from_mean), Slices(0.0));
+          if (outside) return in_time;
+          const Slices edge_m = start == Start::kOutside ? half_chord_m : -half_chord_m;
+          return max(in_time - way.probability_below(edge_m, from_mean), Slices(0.0));
         });
   }
 
@@ -326,7 +357,7 @@ class PassingProbability {
   Vec2 position_m_;
   Mat2 position_covariance_;
   bool moves_ = false;
-  int directions_ = kDirections;    ///< that are enough for a target outside now
+  double sigmas_ = 0.0;             ///< speed over its largest error
   Mat2 root_, by_velocity_, rest_;  ///< A, G, the covariance of e
   Vec2 whitened_;                   ///< the mean of w
 };
