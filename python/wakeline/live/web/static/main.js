@@ -141,7 +141,8 @@ function fit() {
     settings.vectorMinutes = view.range_m < 2000 ? 1 : view.range_m < 6000 ? 3 : 6;
     applySettings();
   }
-  fitted = echoes.range_m > 0 || !settings.show.echoes || store.radars.every((radar) => radar.range_m === undefined);
+  const placed = [...echoes.radars.keys()].every((number) => store.radars.some((radar) => radar.image === number));
+  fitted = (echoes.range_m > 0 && placed) || !settings.show.echoes || store.radars.every((radar) => radar.range_m === undefined);
 }
 
 async function command(wanted) {
