@@ -53,7 +53,7 @@ class FreePlots {
     const auto reach_m = [&](double earlier_m2) {
       return way_m + sigmas * std::sqrt(earlier_m2 + variance_m2);
     };
-    index_.for_each_nearest(later.position.mean, reach_m, kMostNear, [&](int k) {
+    index_.for_each_nearest_of<kMostNear>(plots_, later.position.mean, reach_m, [&](int k) {
       const FreePlot& plot = plots_[static_cast<std::size_t>(k)];
       const double dt_s = later.time_s - plot.time_s;
       const double turns = (later.beam_rad - plot.beam_rad) / Beam::kTurn;

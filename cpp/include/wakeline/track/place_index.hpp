@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "wakeline/track/plane_index.hpp"
@@ -60,6 +62,23 @@ class PlaceIndex {
     for (const Layer& layer : layers_)
       if (!layer.places.empty())
         layer.places.for_each_nearest(position, reach_m(layer.largest_m2), most, function);
+  }
+
+  /// The same for the elements of a vector by these names, which need not be in the cache: they are
+  /// all called for before the first one is used.
+  template <int kMost, class Element, class Reach, class Function>
+  void for_each_nearest_of(const std::vector<Element>& elements, const Vec<double, 2>& position,
+                           const Reach& reach_m, Function&& function) const {
+    constexpr std::size_t kLine = 64;  // bytes of the cache
+    std::array<int, std::size_t{kLayers} * kMost> found;
+    std::size_t count = 0;
+    for_each_nearest(position, reach_m, kMost, [&](int name) {
+      found[count++] = name;
+      const auto* element =
+          reinterpret_cast<const std::byte*>(&elements[static_cast<std::size_t>(name)]);
+      for (std::size_t k = 0; k < sizeof(Element); k += kLine) __builtin_prefetch(element + k);
+    });
+    for (std::size_t k = 0; k < count; ++k) function(found[k]);
   }
 
  private:
