@@ -269,6 +269,24 @@ TEST(Sectors, ATargetThatIsNotSeenMissesOnceATurnAndIsLost) {
   EXPECT_GE(most, 8);
 }
 
+TEST(Sectors, ATargetWhoseGateReachesTheAntennaIsUpdatedAndMissesOnceATurn) {
+  constexpr int kTurns = 60, kSeen = 50;
+  const std::vector<Boat> near{{{60.0, 5.0}, {0.0, 0.1}}};
+  for (const int sectors : {8, 32}) {
+    VesselTracker tracker = make_tracker();
+    int hits = 0, misses = 0;
+    feed(tracker, record(near, {}, kSeen * kTurn, 7), {}, even_ends(sectors, kTurns),
+         [&](const ScanReport&, std::span<const Plot>) {
+           if (const Track* track = tracker.find(1)) {
+             hits = std::max(hits, track->hits);
+             misses = std::max(misses, track->misses);
+           }
+         });
+    EXPECT_NEAR(hits, kSeen, 2) << sectors;
+    EXPECT_NEAR(misses, kTurns - kSeen, 2) << sectors;
+  }
+}
+
 TEST(Sectors, ATargetInABlindSectorCoastsByTimeAndOthersAreUpdated) {
   VesselTracker tracker = make_tracker();
   const std::vector<Boat> two{boats()[2], boats()[3]};  // bearings of about 150 and 83 degrees

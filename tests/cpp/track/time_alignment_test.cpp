@@ -20,7 +20,7 @@ Track moving_track() {
 
 TEST(TimeAlignment, MovesAPlotWithTheVelocityOfTheTrack) {
   const TimeAlignment alignment(moving_track(), 2.5, 0.0);
-  const ScanPlot plot{{{980.0, 12.0}, Mat<double, 2, 2>::Identity()}, 8.0, 0, 0.0, 0.0, false};
+  const ScanPlot plot{{{980.0, 12.0}, Mat<double, 2, 2>::Identity()}, 8.0, 0, 0.0, false};
   EXPECT_TRUE(matrices_near(alignment.at_prediction(plot).mean, Vec<double, 2>(1000.0, 2.0),
                             {.absolute = 1e-12, .relative = 0}));
   EXPECT_EQ(alignment.longest_way_m(2.0), 20.0);

@@ -76,7 +76,6 @@ class Beam {
     }
     if (ahead_rad > kSame_rad) swept_from_rad_ = angle_rad_ + ahead_rad;
     angle_rad_ = std::max(angle_rad_, angle_rad_ + ahead_rad + width_rad);
-    swept_from_rad_ = std::max(swept_from_rad_, angle_rad_ - kTurn);
   }
 
   [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }

@@ -22,11 +22,10 @@ namespace wakeline {
 struct ScanPlot {
   Gaussian<2> position;  ///< [north, east], m
   double time_s;
-  int input;        ///< its index among the plots given to the tracker; -1: of an earlier call
-  double beam_rad;  ///< angle of the beam that saw it, unwrapped; NaN where it is not known
-  double wait_until_rad;        ///< it waits while the beam is before that angle
-  bool waits;                   ///< for the next call
-  double range_m = 0.0;         ///< from the antenna
+  int input;             ///< its index among the plots given to the tracker; -1: of an earlier call
+  double beam_rad;       ///< angle of the beam that saw it, unwrapped; NaN where it is not known
+  bool waits;            ///< for the next call
+  double range_m = 0.0;  ///< from the antenna
   ConvertedErrors errors = {};  ///< where its target is predicted
 };
 
@@ -78,8 +77,7 @@ class ScanPlots {
       if (!usable) continue;
       const double plot_s = std::min(true_s, time_s);
       index_.add(position.mean, position.covariance.trace(), size());
-      plots_.push_back({position, plot_s, static_cast<int>(k), beam_rad(plot),
-                        -std::numeric_limits<double>::infinity(), false, plot.range_m,
+      plots_.push_back({position, plot_s, static_cast<int>(k), beam_rad(plot), false, plot.range_m,
                         radar.errors(plot)});
       earliest_s_ = std::min(earliest_s_, plot_s);
     }
@@ -89,11 +87,6 @@ class ScanPlots {
 
   /// Has a plot wait for the next sector.
   void keep(int index) noexcept { plots_[static_cast<std::size_t>(index)].waits = true; }
-  /// Has it wait until the beam has that angle.
-  void keep_until(int index, double beam_rad) noexcept {
-    double& until_rad = plots_[static_cast<std::size_t>(index)].wait_until_rad;
-    until_rad = std::max(until_rad, beam_rad);
-  }
 
   /// Leaves the plots that wait; their places have changed.
   void drop_settled() noexcept {
@@ -116,7 +109,6 @@ class ScanPlots {
       fields(plot.position.covariance);
       fields(plot.time_s);
       fields(plot.beam_rad);
-      fields(plot.wait_until_rad);
       fields(plot.range_m);
       fields(plot.errors);
       plot.input = -1;
@@ -130,13 +122,8 @@ class ScanPlots {
   template <class Reach, class Function>
   void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
                      Function&& function) const {
-    index_.for_each_nearest(position, reach_m, kMostNear, [&](int index) {
-      if ((*this)[index].time_s <= latest_s_) function(index);
-    });
+    index_.for_each_nearest_of<kMostNear>(plots_, position, reach_m, function);
   }
-
-  /// Hides the plots after a time from `for_each_near`, until the next call.
-  void hide_after(double time_s) noexcept { latest_s_ = time_s; }
 
   /// Time of the earliest plot, or of the scan.
   [[nodiscard]] double earliest_s() const noexcept { return earliest_s_; }
@@ -162,7 +149,6 @@ class ScanPlots {
   PlaceIndex index_;
   double earliest_s_ = 0.0;
   double scan_s_ = 0.0;
-  double latest_s_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace wakeline

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,8 @@ class ScanStages {
     arcs_.reserve(tracks);
     is_candidate_.reserve(plots);
     is_contested_.reserve(plots);
+    rival_plot_.reserve(plots);
+    near_plot_.resize(tracks);
   }
 
   /// A whole turn of a radar where `sector` is null.
@@ -80,13 +83,11 @@ class ScanStages {
       predict(slots);
       find_candidates(slots, true);
     });
-    state().plots.hide_after(std::numeric_limits<double>::infinity());
     list_rivals();
     for_each_group(rivals_, [&](std::span<const int> slots) {
       predict(slots);
       find_candidates(slots, false);
     });
-    state().plots.hide_after(std::numeric_limits<double>::infinity());
     associate();
     for_each_group(due_, [&](std::span<const int> slots) { update(slots); });
 
@@ -113,6 +114,7 @@ class ScanStages {
   static constexpr double kPointedPeriods = 2.0;
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
+  static constexpr int kNoPlot = -1;
 
   /// Calls `f(slots)` for a few tracks at a time, which stay in the cache from stage to stage.
   template <class Function>
@@ -224,29 +226,26 @@ class ScanStages {
   /// Has tracks wait that compete for a plot with one that waits, so that association is of both;
   /// for half of the time that the beam needs to reach their gate again.
   void defer() noexcept {
-    is_contested_.assign(static_cast<std::size_t>(state().plots.size()), 0);
-    const auto contest = [&](int slot) {
-      for_each_near(picture_.tracks.at(slot),
-                    [&](int plot) { is_contested_[static_cast<std::size_t>(plot)] = 1; });
-    };
-    for (const int slot : waiting_) contest(slot);
-    for (bool changed = !waiting_.empty(); changed;) {
-      changed = false;
+    if (!waiting_.empty()) {
+      rival_plot_.resize(static_cast<std::size_t>(state().plots.size()));
+      std::iota(rival_plot_.begin(), rival_plot_.end(), 0);
+      is_contested_.assign(rival_plot_.size(), 0);
+      for (const int slot : waiting_) near_plot_[static_cast<std::size_t>(slot)] = join_near(slot);
+      for (std::size_t k = 0; k < due_.size(); ++k) {
+        const double longest_rad = (Beam::kTurn - (arcs_[k].to_rad - arcs_[k].from_rad)) / 2;
+        const bool may_wait = state().beam.angle_rad() < arcs_[k].to_rad + longest_rad;
+        near_plot_[static_cast<std::size_t>(due_[k])] = may_wait ? join_near(due_[k]) : kNoPlot;
+      }
+      for (const int slot : waiting_)
+        if (const int plot = near_plot_[static_cast<std::size_t>(slot)]; plot != kNoPlot)
+          is_contested_[static_cast<std::size_t>(first_rival_of(plot))] = 1;
       std::size_t left = 0;
       for (std::size_t k = 0; k < due_.size(); ++k) {
-        const BeamArc& arc = arcs_[k];
-        const double longest_rad = (Beam::kTurn - (arc.to_rad - arc.from_rad)) / 2;
-        bool waits = false;
-        if (state().beam.angle_rad() < arc.to_rad + longest_rad)
-          for_each_near(picture_.tracks.at(due_[k]), [&](int plot) {
-            waits = waits || is_contested_[static_cast<std::size_t>(plot)] != 0;
-          });
-        if (waits) {
-          contest(due_[k]);
+        const int plot = near_plot_[static_cast<std::size_t>(due_[k])];
+        if (plot != kNoPlot && is_contested_[static_cast<std::size_t>(first_rival_of(plot))] != 0) {
           waiting_.push_back(due_[k]);
-          changed = true;
         } else {
-          arcs_[left] = arc;
+          arcs_[left] = arcs_[k];
           due_[left++] = due_[k];
         }
       }
@@ -254,6 +253,30 @@ class ScanStages {
       arcs_.resize(left);
     }
     for (std::size_t k = 0; k < due_.size(); ++k) pass(picture_.tracks.at(due_[k]), arcs_[k]);
+  }
+
+  /// Makes the plots in the gate of a track rivals of each other; one of them, or `kNoPlot`.
+  int join_near(int slot) noexcept {
+    int first = kNoPlot;
+    for_each_near(picture_.tracks.at(slot), [&](int plot) {
+      const int other = first_rival_of(plot);
+      if (first == kNoPlot)
+        first = other;
+      else
+        rival_plot_[static_cast<std::size_t>(other)] = first;
+    });
+    return first;
+  }
+
+  /// The one that all rivals of a plot have in common.
+  int first_rival_of(int plot) noexcept {
+    for (int next = rival_plot_[static_cast<std::size_t>(plot)]; next != plot;) {
+      int& of = rival_plot_[static_cast<std::size_t>(plot)];
+      of = rival_plot_[static_cast<std::size_t>(next)];
+      plot = next;
+      next = rival_plot_[static_cast<std::size_t>(plot)];
+    }
+    return plot;
   }
 
   /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
@@ -360,29 +383,7 @@ class ScanStages {
       if (is_rival) rivals_.push_back(slot);
     }
     for (int plot = 0; plot < state().plots.size(); ++plot)
-      if (std::max(state().plots[plot].beam_rad, state().plots[plot].wait_until_rad) >
-          state().beam.angle_rad())
-        state().plots.keep(plot);
-  }
-
-  /// Leaves a track the plots of one turn.
-  ///
-  /// Where the plots of a turn have one time, as in recordings, and the gate of a track is on both
-  /// sides of where a turn ends, plots of two turns are in it. Those half a period after the first
-  /// wait for the next turn.
-  void choose_turn(const Track& track) noexcept {
-    state().plots.hide_after(std::numeric_limits<double>::infinity());
-    const double half_period_s = 0.5 * state().radar.period_s;
-    if (!(state().time_s - state().plots.earliest_s() > half_period_s)) return;
-    const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
-    double first_s = state().time_s;
-    for_each_in_reach(now,
-                      [&](int plot) { first_s = std::min(first_s, state().plots[plot].time_s); });
-    for_each_in_reach(now, [&](int plot) {
-      if (state().plots[plot].time_s > first_s + half_period_s)
-        state().plots.keep_until(plot, state().beam.angle_rad() + Beam::kTurn);
-    });
-    state().plots.hide_after(first_s + half_period_s);
+      if (state().plots[plot].beam_rad > state().beam.angle_rad()) state().plots.keep(plot);
   }
 
   /// Calls `f(plot)` for the plots that may be in the gate of a belief, about.
@@ -408,7 +409,6 @@ class ScanStages {
     std::size_t count = 0;
     for (const int slot : slots) {
       const Track& track = picture_.tracks.at(slot);
-      if (!whole_turn_) choose_turn(track);
       const double time_s = expected_time_s(track, state().plots, state().radar.max_speed_mps);
       if (!(time_s > track.time_s)) continue;
       steps[count] = {&picture_.estimator_at(slot), time_s - track.time_s};
@@ -428,7 +428,6 @@ class ScanStages {
     for (const int slot : slots) {
       const Track& track = picture_.tracks.at(slot);
       CandidatePlots& candidates = candidates_of(track);
-      if (!whole_turn_) choose_turn(track);
       modes_.read(picture_.estimator_at(slot));
       const TimeAlignment alignment(
           track, state().radar.period_s,
@@ -622,14 +621,16 @@ class ScanStages {
   }
 
   Picture<Estimator, Steps>& picture_;
-  bool whole_turn_ = true;      ///< of this call
-  std::vector<int> due_;        ///< slots of the tracks whose gate the beam has passed
-  std::vector<int> waiting_;    ///< and of those whose gate it is in
-  std::vector<int> rivals_;     ///< of these that have a candidate in common with one that is due
-  std::vector<int> competing_;  ///< both
-  std::vector<char> touched_;   ///< by slot: whether this call has counted for the track
-  std::vector<BeamArc> arcs_;   ///< of the tracks that are due
-  std::vector<char> is_contested_;  ///< by plot: a track that waits competes for it
+  bool whole_turn_ = true;       ///< of this call
+  std::vector<int> due_;         ///< slots of the tracks whose gate the beam has passed
+  std::vector<int> waiting_;     ///< and of those whose gate it is in
+  std::vector<int> rivals_;      ///< of these that have a candidate in common with one that is due
+  std::vector<int> competing_;   ///< both
+  std::vector<char> touched_;    ///< by slot: whether this call has counted for the track
+  std::vector<BeamArc> arcs_;    ///< of the tracks that are due
+  std::vector<int> near_plot_;   ///< by slot: a plot in the gate of a track, or `kNoPlot`
+  std::vector<int> rival_plot_;  ///< by plot: a rival of it, or itself
+  std::vector<char> is_contested_;  ///< by plot without another rival: a track waits for one of all
   std::vector<char> is_candidate_;  ///< by plot: of a track that is due
 
   ModePositions modes_;                     ///< of the track at hand
