@@ -462,7 +462,7 @@ def test_a_page_is_back_when_the_server_is(page):
     with WebServer(harbor, port=port):
         began_s = time.monotonic()
         page.wait_for("wakeline.store.tracks.size === 2")
-        assert time.monotonic() - began_s < 1.0
+        assert time.monotonic() - began_s < 1.5  # with what asking the browser takes
         page.wait_for("document.querySelector('#link').hidden")
 
 
