@@ -5,6 +5,7 @@
 #include <string>
 
 #include "models.hpp"
+#include "support/arguments.hpp"
 #include "support/types.hpp"
 #include "wakeline/filter/ukf.hpp"
 
@@ -51,7 +52,8 @@ std::size_t steps(const std::string& work, int rounds) {
   if (work == "imm3_step") return polar(bench::imm<3, double>());
   if (work == "imm5_step") return polar(bench::imm<5, double>());
   throw py::value_error(
-      "work must be kf_step, ekf_polar_step, ukf5_step, imm3_step or imm5_step, got " + work);
+      "work must be kf_step, ekf_polar_step, ukf5_step, imm3_step or imm5_step, got " +
+      quoted(work));
 }
 
 }  // namespace

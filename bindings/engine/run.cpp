@@ -277,8 +277,9 @@ void define_run_result(py::module_& m) {
       .def("__repr__", &result_text);
   // Of optional libraries, which only Python knows.
   const auto in_python = [](const char* function) {
-    return [function](const py::object& self, const py::object& time_s) {
-      return py::module_::import("wakeline._frames").attr(function)(self, time_s);
+    return [function](const py::object& self, const std::optional<DoubleArray>& time_s) {
+      const py::object times = time_s ? py::object(*time_s) : py::none();
+      return py::module_::import("wakeline._frames").attr(function)(self, times);
     };
   };
   result

@@ -25,7 +25,7 @@ const Leeway& leeway_of(const std::string& kind) {
   std::string known;
   for (const Leeway& entry : kLeewayTable)
     known += (known.empty() ? "" : ", ") + std::string(entry.kind);
-  throw py::value_error("kind must be one of " + known + ", got '" + kind + "'");
+  throw py::value_error("kind must be one of " + known + ", got " + quoted(kind));
 }
 
 py::dict leeway_kinds() {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "support/arguments.hpp"
 #include "support/types.hpp"
 #include "wakeline/filter/augmented_ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
@@ -394,7 +395,6 @@ std::pair<Array, Array> step_navigators(const std::vector<PyNavigator*>& navigat
                             std::to_string(n) + " and " + std::to_string(navigator->states()));
   Array mean({runs, n}), covariance({runs, n, n});
   double *to_mean = mean.mutable_data(), *to_covariance = covariance.mutable_data();
-  const py::gil_scoped_release no_python;
   for (py::ssize_t r = 0; r < runs; ++r)
     navigators[std::size_t(r)]->step(dt_s, imu.data() + 3 * r, gnss.data() + 2 * r,
                                      compass.data() + r, std, to_mean + n * r,
@@ -413,7 +413,7 @@ PyNavigator make(const Model& model, const std::string& filter, const UsvOutlier
   if (filter == "augmented_ukf")
     return PyNavigator(UsvNavigator<Model, AugmentedUkf>(model, outliers, unmeasured, unscented),
                        arguments);
-  throw py::value_error("filter must be 'ekf', 'ukf' or 'augmented_ukf', got '" + filter + "'");
+  throw py::value_error("filter must be 'ekf', 'ukf' or 'augmented_ukf', got " + quoted(filter));
 }
 
 }  // namespace

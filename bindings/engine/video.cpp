@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "support/arguments.hpp"
 #include "support/thread_lock.hpp"
 #include "support/types.hpp"
 #include "support/video.hpp"
@@ -30,7 +31,7 @@ Meaning meaning(const char* name, const std::map<std::string, Meaning>& words,
   if (const auto found = words.find(word); found != words.end()) return found->second;
   std::string known;
   for (const auto& [other, unused] : words) known += (known.empty() ? "" : " or ") + other;
-  throw py::value_error(std::string(name) + " must be " + known + ", got " + word);
+  throw py::value_error(std::string(name) + " must be " + known + ", got " + quoted(word));
 }
 
 CfarSettings cfar_settings(const std::string& kind, int train_cells, int guard_cells,

@@ -49,6 +49,13 @@ std::uint64_t fingerprint(const py::object& one) {
   return checksum(std::as_bytes(std::span(text.data(), text.size())));
 }
 
+std::string quoted(const py::handle& value) {
+  constexpr py::ssize_t kMost = 80;
+  const py::str text = py::repr(value);
+  if (PyUnicode_GetLength(text.ptr()) <= kMost) return text.cast<std::string>();
+  return text[py::slice(0, kMost - 3, 1)].cast<std::string>() + "...";
+}
+
 std::string text_of(const py::handle& value) {
   return py::repr(py::isinstance<py::array>(value) ? value.attr("tolist")() : value)
       .cast<std::string>();

@@ -78,6 +78,10 @@ py::handle engine_type(const py::object& one);
 /// Of an object with `_arguments`: a number that differs where the arguments do.
 std::uint64_t fingerprint(const py::object& one);
 
+/// A value of the caller as messages quote it, in at most 80 characters.
+std::string quoted(const py::handle& value);
+inline std::string quoted(const std::string& text) { return quoted(py::str(text)); }
+
 /// A value as Python shows it, arrays as lists.
 std::string text_of(const py::handle& value);
 

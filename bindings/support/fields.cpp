@@ -10,14 +10,6 @@
 namespace wakeline::python {
 namespace {
 
-/// A value of the caller as messages quote it, in at most 80 characters.
-std::string quoted(const py::handle& value) {
-  constexpr py::ssize_t kMost = 80;
-  const py::str text = py::repr(value);
-  if (PyUnicode_GetLength(text.ptr()) <= kMost) return text.cast<std::string>();
-  return text[py::slice(0, kMost - 3, 1)].cast<std::string>() + "...";
-}
-
 /// "10.0", "0.0174533", "'probabilistic'", "OwnShip()".
 std::string default_text(const py::object& value) {
   if (py::isinstance<py::float_>(value)) {

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "support/arguments.hpp"
 #include "support/types.hpp"
 #include "wakeline/core/fields.hpp"
 
@@ -17,8 +18,8 @@ template <NamedEnum Option>
 Option to_option(const char* name, const std::string& given) {
   for (const auto& word : words_of(Option{}))
     if (given == word.text) return word.value;
-  throw py::value_error(std::string(name) + " must be " + choices<Option>() + ", got '" + given +
-                        "'");
+  throw py::value_error(std::string(name) + " must be " + choices<Option>() + ", got " +
+                        quoted(given));
 }
 
 template <NamedEnum Option>

@@ -205,3 +205,23 @@ def test_an_imm_is_as_it_was_after_a_call_that_failed():
     with pytest.raises(TypeError):
         imm.update(Own(), [1.0])
     assert imm.save() == before
+
+
+LONG = 10_000 * "ä"
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: wl.TrackerConfig(association=LONG),
+        lambda: wl.Radar(range_std_m=LONG),
+        lambda: wl.UsvNavigator(filter=LONG),
+        lambda: wl.navigation.leeway_lines(LONG),
+        lambda: wl.gating.strobe_echo(None, wl.RadiusGate(radius_m=1.0), [0, 0], several=LONG),
+        lambda: wl.video.cfar(np.zeros((8, 64), np.uint8), kind=LONG),
+    ],
+)
+def test_no_message_quotes_a_long_text_in_full(call):
+    with pytest.raises((TypeError, ValueError, AttributeError)) as raised:
+        call()
+    assert len(str(raised.value)) < 1000
