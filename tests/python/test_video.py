@@ -418,7 +418,7 @@ def test_a_view_outlives_the_name_of_its_image():
 @pytest.mark.parametrize(
     ("keywords", "message"),
     [
-        ({"kind": "best"}, "kind must be cell_averaging or ordered_statistic, got best"),
+        ({"kind": "best"}, "kind must be cell_averaging or ordered_statistic, got 'best'"),
         ({"train_cells": 0}, "train_cells must be 1 to 128, got 0"),
         ({"threshold_factor": -1.0}, "threshold_factor must be above 0 and at most 1000"),
         ({"rank": 0.0}, "rank must be above 0"),
@@ -447,7 +447,7 @@ def test_amplitudes_of_another_kind_are_rejected():
         wl.ScanImage(360, 200, bits=12)
     with pytest.raises(ValueError, match="probability must be between 0 and 1, got 0"):
         wl.video.threshold_factor(0.0)
-    with pytest.raises(ValueError, match="noise must be exponential or rayleigh, got white"):
+    with pytest.raises(ValueError, match="noise must be exponential or rayleigh, got 'white'"):
         wl.video.threshold_factor(0.1, noise="white")
     with pytest.raises(ValueError, match=r"corners_m must have shape \(k, 2\), got \(3,\)"):
         wl.LandMask().exclude_polygon([1.0, 2.0, 3.0])
