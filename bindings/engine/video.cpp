@@ -604,7 +604,7 @@ first_azimuth_rad : float
       .def("add", &AnyScanImage::add, py::arg("video"),
            "Add the sweeps of a video; returns the number of valid ones. "
            "Another start range or cell length clears the image first.")
-      .def("clear", &AnyScanImage::clear, "Sets all amplitudes to 0, as before the first sweep.")
+      .def("clear", &AnyScanImage::clear, "Set all amplitudes to 0, as before the first sweep.")
       .def_property_readonly("amplitude", &view_of,
                              "(sweeps, cells) of uint8 or uint16: the image's own memory, which "
                              "changes with it.")

@@ -485,14 +485,6 @@ class _Scale:
     def range_m(self) -> float:
         return self.start_range_m + self.cells * self.cell_m
 
-    def is_of(self, sweep: _Sweep) -> bool:
-        """Whether the sweep has exactly these cells."""
-        return (
-            sweep.geometry == (self.start_range_m, self.cell_m)
-            and len(sweep.amplitude) == self.cells
-            and sweep.amplitude.dtype.itemsize == self.octets
-        )
-
 
 def _returns(scales: Iterable[_Scale]) -> int:
     """How often the range scale changes back to one that was sent before."""
@@ -673,12 +665,13 @@ class _Order:
         waiting: collections.deque[tuple[_Sweep, _Scale]] = collections.deque()
         coming: collections.Counter[_Scale] = collections.Counter()
         seen: dict[_Scale, int] = {}
-        scale: _Scale | None = None
+        before: _Sweep | None = None
         sweeps = iter(sweeps)
         for index in itertools.count():
             for sweep in itertools.islice(sweeps, _NEAR - len(waiting)):
-                if scale is None or not scale.is_of(sweep):
+                if before is None or not sweep.follows(before):
                     scale = sweep.scale
+                before = sweep
                 waiting.append((sweep, scale))
                 coming[scale] += 1
             if not waiting:

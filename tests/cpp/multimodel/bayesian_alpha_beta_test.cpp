@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>

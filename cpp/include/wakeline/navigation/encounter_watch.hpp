@@ -548,10 +548,7 @@ class EncounterWatch {
 
   /// Saves or restores; the limits are compared, not restored.
   void archive(Archive& fields) {
-    std::uint32_t version = kArchiveVersion;
-    fields(version);
-    if (version != kArchiveVersion) fields.fail();
-    fields.rules(limits_, max_vessels_, zones_.size());
+    fields.rules(kArchiveVersion, limits_, max_vessels_, zones_.size());
     for (const DangerZone& zone : zones_) {
       fields.rules(zone.limits, zone.outline_m.size());
       for (const Vec2& corner : zone.outline_m) fields.rules(corner[0], corner[1]);

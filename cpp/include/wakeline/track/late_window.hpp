@@ -469,10 +469,7 @@ class LateWindow {
   }
 
   void archive(Archive& fields, double& oldest_s, InputLog& log, Progress& progress) {
-    std::uint32_t version = kArchiveVersion;
-    fields(version);
-    if (version != kArchiveVersion) fields.fail();
-    fields.rules(config_);
+    fields.rules(kArchiveVersion, config_);
     for (int k = 0; k < tracker_.radar_numbers(); ++k)
       if (tracker_.has_radar(k)) fields.rules(tracker_.radar(k));
     fields(oldest_s);

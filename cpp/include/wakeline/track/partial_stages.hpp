@@ -36,7 +36,7 @@ class PartialStages {
     const double periods = std::abs(scan.time_s - before_s) / picture_.longest_period_s();
     scan.std /= std::sqrt(std::clamp(periods, kLeastPartialPeriods, 1.0));
     before_s = std::max(before_s, scan.time_s);
-    picture_.events.clear();
+    picture_.clear_results();
     const std::span<const double> values = scan.values.first(
         std::min(scan.values.size(), static_cast<std::size_t>(picture_.config.max_plots)));
     picture_.plot_track_id.assign(values.size(), 0);

@@ -302,21 +302,9 @@ struct Picture {
 
   /// Saves or restores; the settings are compared, not restored.
   void archive(Archive& fields) {
-    std::uint32_t version = kArchiveVersion;
-    std::uint64_t models = fingerprint(prototype);
-    const std::uint64_t own_models = models;
-    fields(version);
-    fields(models);
-    if (version != kArchiveVersion || models != own_models) fields.fail();
-    fields.rules(config);
-    auto count = static_cast<std::uint64_t>(radars.size());
-    fields(count);
-    if (count != radars.size()) fields.fail();
-    if (!fields.ok()) return;
+    fields.rules(kArchiveVersion, fingerprint(prototype), config, radars.size());
     for (const RadarState& radar : radars) {
-      bool in_use = radar.in_use;
-      fields(in_use);
-      if (in_use != radar.in_use) fields.fail();
+      fields.rules(radar.in_use);
       if (radar.in_use) fields.rules(radar.radar);
     }
     if (!fields.ok()) return;

@@ -125,9 +125,6 @@ class ScanPlots {
     index_.for_each_nearest_of<kMostNear>(plots_, position, reach_m, function);
   }
 
-  /// Time of the earliest plot, or of the scan.
-  [[nodiscard]] double earliest_s() const noexcept { return earliest_s_; }
-
   [[nodiscard]] int size() const noexcept { return static_cast<int>(plots_.size()); }
   [[nodiscard]] const ScanPlot& operator[](int index) const noexcept {
     return plots_[static_cast<std::size_t>(index)];
@@ -147,7 +144,7 @@ class ScanPlots {
 
   std::vector<ScanPlot> plots_;
   PlaceIndex index_;
-  double earliest_s_ = 0.0;
+  double earliest_s_ = 0.0;  ///< of the plots and the scan
   double scan_s_ = 0.0;
 };
 

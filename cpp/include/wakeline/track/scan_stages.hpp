@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "wakeline/gating/run_labels.hpp"
 #include "wakeline/track/association.hpp"
 #include "wakeline/track/association_probabilities.hpp"
 #include "wakeline/track/duplicates.hpp"
@@ -111,7 +112,6 @@ class ScanStages {
 
  private:
   static constexpr double kClockPeriods = 10.0;  ///< in which a plot of another time is in error
-  static constexpr double kPointedPeriods = 2.0;
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
   static constexpr int kNoPlot = -1;
@@ -270,13 +270,8 @@ class ScanStages {
 
   /// The one that all rivals of a plot have in common.
   int first_rival_of(int plot) noexcept {
-    for (int next = rival_plot_[static_cast<std::size_t>(plot)]; next != plot;) {
-      int& of = rival_plot_[static_cast<std::size_t>(plot)];
-      of = rival_plot_[static_cast<std::size_t>(next)];
-      plot = next;
-      next = rival_plot_[static_cast<std::size_t>(plot)];
-    }
-    return plot;
+    return detail::find_root(
+        plot, [&](int rival) -> int& { return rival_plot_[static_cast<std::size_t>(rival)]; });
   }
 
   /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
@@ -295,7 +290,8 @@ class ScanStages {
   /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
   [[nodiscard]] double next_look_rad(const Track& track, const BeamArc& arc) const noexcept {
     const double range_m = (track.position() - state().position()).norm();
-    const double way_m = kPointedPeriods * state().radar.max_speed_mps * state().radar.period_s;
+    const double way_m =
+        picture_.kPointedPeriods * state().radar.max_speed_mps * state().radar.period_s;
     const double way_rad = way_m < range_m ? std::asin(way_m / range_m) : kPi<double>;
     const double wide_rad = arc.to_rad - arc.from_rad + way_rad;
     return arc.centre_rad + Beam::kTurn - std::min(wide_rad, kPi<double>);

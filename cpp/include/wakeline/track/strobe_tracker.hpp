@@ -397,13 +397,7 @@ class StrobeTracker {
 
   /// Saves or restores; the settings are compared, not restored.
   void archive(Archive& fields) {
-    std::uint32_t version = kArchiveVersion;
-    std::uint64_t models = fingerprint(prototype_);
-    const std::uint64_t own_models = models;
-    fields(version);
-    fields(models);
-    if (version != kArchiveVersion || models != own_models) fields.fail();
-    fields.rules(radar_, config_);
+    fields.rules(kArchiveVersion, fingerprint(prototype_), radar_, config_);
     if (!fields.ok()) return;
     fields(time_s_);
     fields(running_);

@@ -25,13 +25,13 @@ inline double on_nearest_day(double time_of_day_s, double near_s) noexcept {
 /// Clocks of sensors are often wrong and seldom drift. A time that is at most `limit_s` from that
 /// of reception is right; the difference of a first time that is not is held as the offset of the
 /// sensor's clock. It is found again when all times have been more than `limit_s` from where the
-/// offset puts them for `kPatience`. Until then such a time is that of data that come late, where
+/// offset puts them for `kPatience_s`. Until then such a time is that of data that come late, where
 /// it is before the reception, and else that of reception.
 class SensorClock {
  public:
-  /// Seconds of reception after which a clock counts as changed: longer than a connection that was
+  /// Of reception, after which a clock counts as changed: longer than a connection that was
   /// held up takes to deliver what has waited.
-  static constexpr double kPatience = 10.0;
+  static constexpr double kPatience_s = 10.0;
 
   /// Throws `std::invalid_argument` unless the limit, s, is finite and positive.
   explicit SensorClock(double limit_s = 5.0) : limit_s_(limit_s) {
@@ -50,7 +50,8 @@ class SensorClock {
       return on_time_s;
     }
     if (is_known && astray_since_s_ == kNever) astray_since_s_ = received_s;
-    if (std::abs(received_s - astray_since_s_) < kPatience) return std::min(on_time_s, received_s);
+    if (std::abs(received_s - astray_since_s_) < kPatience_s)
+      return std::min(on_time_s, received_s);
     const double near_s = on_nearest_day(time_s, received_s);
     const double late_s = received_s - near_s;
     offset_s_ = std::abs(late_s) > limit_s_ ? late_s : 0.0;
