@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import contextlib
 import errno
 import queue
@@ -55,7 +56,7 @@ class _Clock:
 now_s = _Clock()
 
 
-class _Thread:
+class _Thread(abc.ABC):
     """The thread of an input or output, which ends when it is closed; listens at `tcp-listen`."""
 
     def __init__(self, config: InputConfig | OutputConfig) -> None:
@@ -118,13 +119,13 @@ class _Thread:
             self.connection = "connected"
             yield one
 
+    @abc.abstractmethod
     def _udp_socket(self) -> socket.socket:
         """The socket of datagrams."""
-        raise NotImplementedError
 
+    @abc.abstractmethod
     def _work(self) -> bool:
         """Work until an error; True if all is done."""
-        raise NotImplementedError
 
 
 class NetworkInput(_Thread):

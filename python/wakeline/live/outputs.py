@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -80,7 +81,7 @@ class JsonOutput(Output):
         self._send(write_line(event.get("type", "event"), event))
 
 
-class WireOutput(Output):
+class WireOutput(Output, abc.ABC):
     """Sentences or datagrams of the feeds of :mod:`wakeline.wire`, which have all shown tracks.
 
     They are sent when the session knows where it is.
@@ -112,13 +113,13 @@ class WireOutput(Output):
         self._feed = self._make(session)
         self._feed.restore(state)
 
+    @abc.abstractmethod
     def _make(self, session: Session) -> Any:
         """The feed."""
-        raise NotImplementedError
 
+    @abc.abstractmethod
     def _more(self, session: Session) -> dict[str, Any]:
         """What else the feed is given."""
-        raise NotImplementedError
 
 
 class TtmOutput(WireOutput):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import math
 import pickle
 import threading
@@ -73,7 +74,7 @@ class Source(Protocol):
         """Go back to a state."""
 
 
-class Player:
+class Player(abc.ABC):
     """A time that plays, stops and can be set, on a thread.
 
     Attributes
@@ -129,13 +130,13 @@ class Player:
             self._advance(time_s)
             self.time_s = time_s
 
+    @abc.abstractmethod
     def _go_back(self, time_s: float) -> None:
         """Be at some time not after `time_s`."""
-        raise NotImplementedError
 
+    @abc.abstractmethod
     def _advance(self, time_s: float) -> None:
         """Take all that is new until a time."""
-        raise NotImplementedError
 
     def command(self, command: Mapping[str, Any]) -> dict[str, Any]:
         """What an operator asks for, as :meth:`wakeline.live.Session.command`.
@@ -152,8 +153,9 @@ class Player:
             except (ValueError, TypeError, OverflowError, wl.FilterError) as error:
                 return {"ok": False, "error": str(error)[:200]}
 
+    @abc.abstractmethod
     def _obey(self, command: Mapping[str, Any]) -> dict[str, Any]:
-        raise NotImplementedError
+        """Do what an operator asks for, but for the time that plays."""
 
     def _replay(self, command: Mapping[str, Any]) -> dict[str, Any]:
         if "speed" in command:
