@@ -101,7 +101,7 @@ class TrackEngine:
         window_s = window_s or max(_WINDOW_S, 2.0 * max(one.period_s for one in radars))
         plots = int(_SCANS * settings.tracker["max_plots"])
         self._tracker = settings.window_of(self.radars, window_s=window_s, max_plots=plots)
-        self._last_s = [-math.inf] * len(self.radars)
+        self._heard: set[int] = set()  # radars that have given a sector
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0
         self._known = np.zeros(0, dtype=np.int64), np.zeros((0, 4))
@@ -152,7 +152,7 @@ class TrackEngine:
             own=own,
             covariance=covariance,
         )
-        self._last_s[radar] = max(time_s, self._last_s[radar])
+        self._heard.add(radar)
         return events + _events(report.events)
 
     def note_lateness(self, time_s: float, received_s: float) -> None:
@@ -172,10 +172,9 @@ class TrackEngine:
             self._correct_s = self.time_s
         elif time_s - self._correct_s > self._tracker.window_s:
             events += self.correct()
-        heard = [k for k, last_s in enumerate(self._last_s) if last_s > -math.inf]
-        if not heard:
+        if not self._heard:
             return events
-        fastest = min(heard, key=lambda k: self.radars[k].period_s)
+        fastest = min(sorted(self._heard), key=lambda k: self.radars[k].period_s)
         wait_s = _SILENT_TURNS * self.radars[fastest].period_s
         if self.time_s < time_s - wait_s - min(self._late_s, self._tracker.window_s):
             events += self._catch_up(fastest, time_s)
@@ -260,7 +259,7 @@ class TrackEngine:
     def restore(self, state: bytes) -> None:
         """Continue from a state; ValueError if it is that of another tracker."""
         self._tracker.restore(state)
-        self._last_s = [self.time_s] * len(self.radars)
+        self._heard = set(range(len(self.radars)))
 
     def report(self, **report: Any) -> list[dict[str, Any]]:
         """Take a position report with an identity; the events of tracks.
