@@ -296,7 +296,7 @@ class LiveConfig:
                 _check_choice("radar", one.radar, [radar.name for radar in self.radars])
         for one in self.guard_zones:
             try:
-                Zone.of(placed(one, lambda north, east: (north * 1e3, east * 1e3)))
+                Zone.of(placed(one, lambda latitude, longitude: (latitude * 1e3, longitude * 1e3)))
             except (ValueError, TypeError) as error:
                 raise SettingsError(f"[[guard_zone]]: {error}") from None
 

@@ -28,6 +28,7 @@ _SECTOR_RAD = _TAU / 64
 _TRIAL_RAD = _TAU  # of video that settings are estimated from
 _MOST_TRIAL = 256 << 20  # octets
 _LEAST_STEP_S = 1e-4  # between the ends of sectors
+_JITTER_S = 1.0  # so much before the last end: the rate is of few sweeps
 _SILENT_S = 5.0  # a sweep after a longer silence begins anew
 
 Show = Callable[[np.ndarray, float, np.ndarray], None]
@@ -249,7 +250,7 @@ class VideoFeed:
         time_s = float(sweeps.time_s[-1])
         if rate > 0.0:
             time_s -= _BEHIND_RAD / rate
-        if 0.0 <= self._edge_s - time_s < _LEAST_STEP_S * 1e4:  # the rate is of few sweeps
+        if 0.0 <= self._edge_s - time_s < _JITTER_S:
             time_s = self._edge_s + _LEAST_STEP_S
         self._edge_s = time_s
         from_rad = self._edge_rad
