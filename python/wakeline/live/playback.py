@@ -208,8 +208,7 @@ class SessionPlayback(Player):
     ) -> None:
         self._path, self._attach = path, attach or (lambda _: None)
         first = next(read_session(path))
-        recorded = replace(config_of(first.values["settings"], path), outputs=())
-        self._config = config or recorded
+        self._config = config or replace(config_of(first.values["settings"], path), outputs=())
         start_s = end_s = first.time_s
         for record in read_session(path):
             end_s = max(end_s, record.time_s)
