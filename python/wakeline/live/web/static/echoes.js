@@ -85,7 +85,6 @@ export class Echoes {
   constructor(canvas, wantsGl = true) {
     this.radars = new Map();
     this.gap = 0;
-    this.version = 0; // of messages
     this.painter = null;
     if (wantsGl) {
       try {
@@ -148,7 +147,6 @@ export class Echoes {
     const place = placeOf(number);
     radar.take(view, count, threshold, Echoes.stamp(time_s), [place.north, place.east]);
     this.changed = true;
-    this.version += 1;
   }
 
   clear() {

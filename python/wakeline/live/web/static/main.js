@@ -584,7 +584,6 @@ function covered() {
 const spent = { frames: 0, total_ms: 0, most_ms: 0 };
 let drawn_ms = 0;
 let symbols_ms = 0;
-let drawnEchoes = -1;
 let panel_ms = 0;
 let blink = false;
 function frame(now_ms) {
@@ -594,7 +593,7 @@ function frame(now_ms) {
   const blinks = Math.floor(now_ms / BLINK_MS) % 2 === 1;
   const moves = connected && !(store.replay?.paused) && now_ms - symbols_ms > SYMBOLS_MS;
   const symbols = dirty || moves || blinks !== blink || due || panelDue;
-  if (!symbols && echoes.version === drawnEchoes) return;
+  if (!symbols && !(settings.show.echoes && echoes.changed)) return;
   const began = performance.now();
   drawn_ms = now_ms;
   dirty = false;
@@ -603,7 +602,6 @@ function frame(now_ms) {
   const here = store.ownAt(time_s);
   view.follow(here);
   const palette = PALETTES[settings.palette];
-  drawnEchoes = echoes.version;
   if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, placeOf(here));
   else echoes.blank(palette);
   if (symbols) drawSymbols(now_ms, time_s, here, palette, due);
