@@ -13,7 +13,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from wakeline.live.alarms import AlarmLog
 from wakeline.live.config import (
     IN_FORMATS,
     OUT_FORMATS,
@@ -188,9 +187,7 @@ def _serve(arguments: argparse.Namespace, service: Service, is_done: Any = lambd
             service.stop()
 
     with contextlib.ExitStack() as stack:
-        if arguments.alarms is not None:
-            log = stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
-            service.session.watchers[0].log = log
+        service.session.watchers[0].log = view.alarm_log(arguments, stack)
         stack.enter_context(_stopped_by_signals(service.stop))
         stack.enter_context(_screen(arguments, service.session))
         service.run(every_s=service.session.config.session.status_s or 1.0, report=report)
@@ -205,9 +202,7 @@ def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
         stack.callback(close_all, outputs)
         for one in outputs:
             one.start()
-        log = None
-        if arguments.alarms is not None:
-            log = stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
+        log = view.alarm_log(arguments, stack)
 
         def attach(session: Session) -> None:
             for one in outputs:

@@ -15,6 +15,7 @@ from wakeline.recording import RecordingError, read_own_ship, read_tracks
 from wakeline.tracking import read_settings
 
 if TYPE_CHECKING:
+    from wakeline.live.alarms import AlarmLog
     from wakeline.live.playback import Player
 
 _ABOUT = """\
@@ -55,7 +56,6 @@ def add_screen_options(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    from wakeline.live.alarms import AlarmLog
     from wakeline.live.playback import Playback, RecordedTracks, SessionPlayback
 
     if arguments.file.suffix.lower() not in (".csv", ".gz"):
@@ -67,11 +67,18 @@ def run(arguments: argparse.Namespace) -> None:
     own = read_own_ship(arguments.own) if arguments.own is not None else None
     source, settings = RecordedTracks(tracks), read_settings(arguments.config)
     with contextlib.ExitStack() as stack:
-        log = None
-        if arguments.alarms is not None:
-            log = stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
+        log = alarm_log(arguments, stack)
         player = Playback(source, own=own, settings=settings, log=log, speed=arguments.speed)
         show(player, arguments)
+
+
+def alarm_log(arguments: argparse.Namespace, stack: contextlib.ExitStack) -> AlarmLog | None:
+    """The table of alarms, if it is asked for; the stack closes it."""
+    if arguments.alarms is None:
+        return None
+    from wakeline.live.alarms import AlarmLog
+
+    return stack.enter_context(contextlib.closing(AlarmLog(arguments.alarms)))
 
 
 def show(player: Player, arguments: argparse.Namespace) -> None:
