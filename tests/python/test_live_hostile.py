@@ -8,7 +8,7 @@ import pytest
 
 import wakeline as wl
 from test_live_outputs import TARGETS, ashore, block, of_day, plot_048, rotating
-from test_live_service import opened, taken, until  # noqa: F401 - a fixture
+from test_live_service import opened, until
 from wakeline.live import network
 
 MIDNIGHT_S = 86400.0 * 20_600
@@ -131,10 +131,10 @@ def test_of_two_radars_on_one_group_the_first_counts():
     assert status["radars"]["A"]["sectors"] == alone.status()["radars"]["A"]["sectors"]
 
 
-def test_a_peer_that_vanishes_is_found_gone(monkeypatch, taken):  # noqa: F811
+def test_a_peer_that_vanishes_is_found_gone(monkeypatch):
     """A connection of which no end was sent ends by probes: at an input and at an output."""
     monkeypatch.setattr(network, "PROBES", {"TCP_KEEPIDLE": 1, "TCP_KEEPINTVL": 1})
-    one = opened("tcp-listen://127.0.0.1:0?name=in", taken)
+    one = opened("tcp-listen://127.0.0.1:0?name=in", lambda name, messages: None)
     other = network.NetworkOutput(wl.live.OutputConfig("tcp-listen://127.0.0.1:0"))
     other.start()
     peers = [socket.create_connection(("127.0.0.1", port)) for port in (one.port, other.port)]
