@@ -14,6 +14,7 @@ import time
 import pytest
 
 import wakeline as wl
+from test_live import written
 from wakeline.cli import main
 from wakeline.live.config import (
     InputConfig,
@@ -199,9 +200,8 @@ def test_a_flood_is_dropped_and_counted():
 def run_demo_like(record, turns, begin_s):
     """A service that is sent some turns by UDP; its session and the lines it wrote."""
     config = LiveConfig(inputs=(InputConfig("udp://127.0.0.1:0?name=in"),), radars=(ASHORE,))
-    session, lines = wl.live.Session(config), []
-    session.add_output("file:x").send = lines.append
-    service = Service(session, record)
+    session = wl.live.Session(config)
+    lines, service = written(session), Service(session, record)
     thread = threading.Thread(target=service.run)
     thread.start()
     port = service.inputs[0].port
@@ -217,8 +217,8 @@ def run_demo_like(record, turns, begin_s):
 
 
 def replayed(path, speed=math.inf):
-    session, lines = wl.live.Session(LiveConfig(radars=(ASHORE,))), []
-    session.add_output("file:x").send = lines.append
+    session = wl.live.Session(LiveConfig(radars=(ASHORE,)))
+    lines = written(session)
     for record in replay(path, speed):
         feed_record(session, record)
     return session, lines
@@ -239,8 +239,8 @@ def test_a_session_replays_bit_for_bit_and_goes_on_with_the_same_numbers(tmp_pat
 def fed(path, arrivals, **limits):
     """The session of a service without network, and its lines."""
     config = LiveConfig(radars=(ASHORE,), session=SessionConfig(**limits))
-    service, lines = Service(wl.live.Session(config), path), []
-    service.session.add_output("file:x").send = lines.append
+    service = Service(wl.live.Session(config), path)
+    lines = written(service.session)
     service._begin()
     for t, octets in arrivals:
         service._feed("x", [(t, octets)])
