@@ -43,7 +43,7 @@ class Service:
         self.inputs = [NetworkInput(one, self.take) for one in session.config.inputs]
         self.outputs = [NetworkOutput(one) for one in session.config.outputs]
         self.lost = 0
-        self.ends = threading.Event()
+        self._ends = threading.Event()
         self._waiting: queue.SimpleQueue[tuple[str, list[tuple[float, bytes]]]] = (
             queue.SimpleQueue()
         )
@@ -82,7 +82,7 @@ class Service:
         try:
             self._begin()
             next_s = time.monotonic() + every_s
-            while not self.ends.is_set():
+            while not self._ends.is_set():
                 self._step()
                 if report is not None and every_s > 0.0 and time.monotonic() >= next_s:
                     next_s = max(next_s + every_s, time.monotonic())
@@ -97,7 +97,7 @@ class Service:
 
     def stop(self) -> None:
         """End `run` soon; may be called by a signal handler."""
-        self.ends.set()
+        self._ends.set()
 
     def _begin(self) -> None:
         if self._record is not None:
