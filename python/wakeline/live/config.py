@@ -336,7 +336,8 @@ class LiveConfig:
                 lines += [f"{mark}{line}" for line in _section(f"[{name}]", one)]
         common = self.settings.toml().partition("[tracker]")
         before = common[0].rstrip().rpartition("\n")[2]
-        lines += [] if self.guard_zones else _GUARD_ZONE
+        if not self.guard_zones:
+            lines += _GUARD_ZONE
         for zone in self.guard_zones:
             lines += ["[[guard_zone]]", *(f"{k} = {json.dumps(v)}" for k, v in zone.items()), ""]
         return "\n".join(lines) + f"\n{before}\n[tracker]{common[2]}"
