@@ -12,7 +12,7 @@ from wakeline import plot
 from wakeline._brief import many
 from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
-from wakeline.tracking import calibrate, open_recording, read_reports, read_settings
+from wakeline.tracking import calibrate, read_reports, read_settings
 from wakeline.tracking.calibrated import vessel_names
 
 from . import options, outputs, report
@@ -48,12 +48,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.description = _ABOUT
     parser.epilog = _COLUMNS
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.add_argument(
-        "plots",
-        type=Path,
-        metavar="RECORDING",
-        help="radar plots as CSV, radar video, or the name of a bundled recording",
-    )
+    options.add_recording(parser)
     parser.add_argument(
         "--ais", type=Path, metavar="FILE", required=True, help="position reports of vessels"
     )
@@ -72,10 +67,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     options.add_columns(parser)
     options.add_radar(parser)
     parser.add_argument("--config", type=Path, metavar="F.toml", help="settings")
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="the offsets as JSON")
+    options.add_results(parser, "the offsets as JSON")
     parser.set_defaults(run=run, inputs=inputs)
 
 
@@ -89,14 +81,8 @@ def run(arguments: argparse.Namespace) -> None:
     written = {arguments.out / _RADAR, arguments.out / _PICTURE}
     outputs.check_no_input("--out", written, inputs(arguments))
     settings = read_settings(arguments.config, arguments.radar)
+    recording = options.opened(arguments, settings)
     columns = dict(arguments.columns)
-    recording = open_recording(
-        arguments.plots,
-        arguments.own,
-        period_s=settings.period_s,
-        azimuth=arguments.azimuth,
-        columns=columns,
-    )
     reports = read_reports(arguments.ais, recording, origin_deg=arguments.origin, columns=columns)
     settings = settings.knowing(recording.radar)
     found = calibrate(recording, reports, config=settings, position_std_m=arguments.position_std)

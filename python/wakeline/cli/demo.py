@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from wakeline import metrics, recording
 from wakeline.tracking import Settings
 
-from . import outputs, report, view
+from . import options, outputs, report, view
 from .track import draw_into, track_into
 
 _ABOUT = {
@@ -32,10 +31,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--recording", choices=recording.names(), default="joyride", help="default %(default)s"
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("wakeline-demo"), help="default %(default)s"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the score as JSON")
+    options.add_results(parser, "write the score as JSON", "wakeline-demo")
     view.add_screen_options(parser, "show the recording in the browser instead, as it is tracked")
     parser.set_defaults(run=run)
 

@@ -18,7 +18,7 @@ from wakeline._progress import progress
 from wakeline.recording import NavigationLog, RecordingError, read_imu, read_nmea, replacing
 from wakeline.recording.files import replacing_together
 
-from . import outputs, report
+from . import options, outputs, report
 
 _OWN, _PROBLEMS, _FAILED = "own.csv", "problems.csv", f"problems{outputs.PARTIAL}.csv"
 _LEAST_DRAWN_FIXES = 10
@@ -83,10 +83,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         help="smooth: own.csv and the pictures also use later readings, up to a gap or to rejected "
         "readings that persisted; for finished voyages",
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="errors without satellites")
+    options.add_results(parser, "errors without satellites")
     parser.set_defaults(run=run, inputs=inputs)
 
 

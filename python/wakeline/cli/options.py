@@ -1,12 +1,24 @@
-"""Options about a recording that several commands have, and the files they name."""
+"""Options that several commands have, and the files they name."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
-from wakeline.recording import radar_names
+from wakeline.recording import Recording, radar_names
 from wakeline.recording.azimuths import AZIMUTHS
+from wakeline.tracking import Settings, open_recording
+
+
+def add_recording(parser: argparse.ArgumentParser) -> None:
+    """Add the argument of a recording, bundled or in a file."""
+    parser.add_argument(
+        "plots",
+        type=Path,
+        metavar="RECORDING",
+        help="radar plots as CSV, radar video, or the name of a bundled recording",
+    )
 
 
 def add_own(parser: argparse.ArgumentParser) -> None:
@@ -48,6 +60,28 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
 def add_origin(parser: argparse.ArgumentParser, help_text: str) -> None:
     """Add the option of the position of the plane's origin."""
     parser.add_argument("--origin", type=place, metavar="LAT,LON", help=help_text)
+
+
+def add_results(
+    parser: argparse.ArgumentParser, json_text: str, folder: str = "wakeline-out"
+) -> None:
+    """Add the options of the folder of results, and of results as JSON."""
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", default=Path(folder), help="default %(default)s"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help=json_text)
+
+
+def opened(arguments: argparse.Namespace, settings: Settings, **others: Any) -> Recording:
+    """The recording of the command line; `others` as of :func:`open_recording`."""
+    return open_recording(
+        arguments.plots,
+        arguments.own,
+        period_s=settings.period_s,
+        azimuth=arguments.azimuth,
+        columns=dict(arguments.columns),
+        **others,
+    )
 
 
 def files(arguments: argparse.Namespace, *names: str) -> list[Path]:

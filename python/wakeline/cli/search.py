@@ -12,7 +12,7 @@ from wakeline import navigation, plot
 from wakeline import search as ws
 from wakeline.recording.files import replacing_together
 
-from . import outputs, report
+from . import options, outputs, report
 
 _SEED = 0
 _PLANNED, _JUDGED = 2000, 8000
@@ -36,10 +36,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         metavar="SCENARIO.toml",
         help=f"a file, or a bundled scenario: {', '.join(ws.example_names())}",
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="plan, POS and datum as JSON")
+    options.add_results(parser, "plan, POS and datum as JSON")
     parser.set_defaults(run=run, inputs=inputs)
 
 

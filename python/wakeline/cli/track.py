@@ -12,7 +12,7 @@ from typing import Any
 
 from wakeline import FilterError, metrics
 from wakeline._brief import many
-from wakeline.recording import Episode, OwnShipMotion, Recording
+from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
 from wakeline.tracking import (
     VESSELS,
@@ -24,7 +24,6 @@ from wakeline.tracking import (
     follow_video,
     has_names,
     median_step_s,
-    open_recording,
     read_settings,
     smooth_episode,
     track_episode,
@@ -125,10 +124,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--config", type=Path, metavar="F.toml", help="settings, in the form of --print-config"
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="counts, and scores with --truth")
+    options.add_results(parser, "counts, and scores with --truth")
     parser.add_argument(
         "--print-config", action="store_true", help="print every setting with its explanation"
     )
@@ -149,9 +145,15 @@ def run(arguments: argparse.Namespace) -> None:
     recording.notes.extend(known.memory_notes(arguments.method))
     radar = _radar_text(arguments, settings, known, recording)
     danger = arguments.own is not None
-    if arguments.smooth:
-        track = _smoothed(track)
-    tracks = track_into(arguments.out, recording, known, radar, danger=danger, track=track)
+    tracks = track_into(
+        arguments.out,
+        recording,
+        known,
+        radar,
+        danger=danger,
+        smooth=arguments.smooth,
+        track=track,
+    )
     rows = _rows(tracks.episodes, arguments.plots.name)
     if arguments.truth is not None:
         score = metrics.score(tracks, tracks.recording)
@@ -167,42 +169,24 @@ def _opened(
     arguments: argparse.Namespace, settings: Settings
 ) -> tuple[Recording, Callable[..., TrackedEpisode]]:
     """The recording, and what tracks an episode of it."""
-    path, own = arguments.plots, arguments.own
     if arguments.method == "plots":
         if arguments.acquire is not None:
             raise ValueError("--acquire goes with --method strobe")
-        opened = open_recording(
-            path,
-            own,
-            arguments.truth,
-            period_s=settings.period_s,
-            azimuth=arguments.azimuth,
-            range_scale_m=arguments.range_scale,
-            columns=dict(arguments.columns),
+        opened = options.opened(
+            arguments, settings, truth=arguments.truth, range_scale_m=arguments.range_scale
         )
         return opened, track_episode
     if arguments.truth is not None:
         raise ValueError("--truth goes with plots, not with --method strobe")
     return follow_video(
-        path,
+        arguments.plots,
         settings,
-        own=own,
+        own=arguments.own,
         acquire=arguments.acquire,
         azimuth=arguments.azimuth,
         range_scale_m=arguments.range_scale,
         columns=dict(arguments.columns),
     )
-
-
-def _smoothed(track: Callable[..., TrackedEpisode]) -> Callable[..., TrackedEpisode]:
-    """What tracks an episode and smooths its tracks."""
-
-    def track_and_smooth(
-        episode: Episode, settings: Settings, *, own: OwnShipMotion | None, named: bool
-    ) -> TrackedEpisode:
-        return smooth_episode(track(episode, settings, own=own, named=named), settings)
-
-    return track_and_smooth
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
@@ -231,11 +215,13 @@ def track_into(
     radar: str,
     *,
     danger: bool = False,
+    smooth: bool = False,
     track: Callable[..., TrackedEpisode] = track_episode,
 ) -> TrackedRecording:
     """Track every episode, write tables into `folder`, and print a report.
 
     The files of an earlier run are replaced together. With `danger`, own ship is watched, too.
+    With `smooth`, the tracks are smoothed.
     """
     outputs.make_folder(folder)
     print(_input_lines(recording, settings, radar), flush=True)
@@ -243,7 +229,8 @@ def track_into(
     try:
         for episode in recording:
             own, named = episode.own if danger else None, has_names(recording)
-            parts.append(track(episode, settings, own=own, named=named))
+            part = track(episode, settings, own=own, named=named)
+            parts.append(smooth_episode(part, settings) if smooth else part)
     except (ValueError, FilterError, MemoryError, KeyboardInterrupt):
         if parts:
             with replacing_together(folder, outputs.partial_tables(folder)) as fresh:

@@ -9,7 +9,7 @@ from typing import Any
 
 from wakeline._brief import many
 from wakeline.recording.files import replacing_together
-from wakeline.tracking import Tuning, open_recording, read_settings, tune
+from wakeline.tracking import Tuning, read_settings, tune
 
 from . import options, outputs, report
 
@@ -30,20 +30,12 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command to its parser."""
     parser.description = _ABOUT
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.add_argument(
-        "plots",
-        type=Path,
-        metavar="RECORDING",
-        help="radar plots as CSV, radar video, or the name of a bundled recording",
-    )
+    options.add_recording(parser)
     options.add_own(parser)
     options.add_columns(parser)
     options.add_radar(parser)
     parser.add_argument("--config", type=Path, metavar="F.toml", help="settings to start from")
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("wakeline-out"), help="default %(default)s"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="the parameters as JSON")
+    options.add_results(parser, "the parameters as JSON")
     parser.set_defaults(run=run, inputs=inputs)
 
 
@@ -57,13 +49,7 @@ def run(arguments: argparse.Namespace) -> None:
     written = arguments.out / _SETTINGS
     outputs.check_no_input("--out", [written], inputs(arguments))
     settings = read_settings(arguments.config, arguments.radar)
-    recording = open_recording(
-        arguments.plots,
-        arguments.own,
-        period_s=settings.period_s,
-        azimuth=arguments.azimuth,
-        columns=dict(arguments.columns),
-    )
+    recording = options.opened(arguments, settings)
     outputs.make_folder(arguments.out)
     tuned = tune(recording, config=settings)
     for note in recording.notes:
