@@ -209,16 +209,29 @@ def track_recording(
     >>> tracks.ids()
     ['1']
     """
-    settings = read_settings(config, radar, vessels)
-    opened = open_recording(recording, own, period_s=settings.period_s, azimuth=azimuth)
-    if not isinstance(radar, wl.Radar):
-        settings = settings.knowing(opened.radar)
+    opened, settings = opened_with_settings(recording, radar, vessels, own, config, azimuth)
     watched, named = own is not None, has_names(opened)
     tracked = [
         track_episode(episode, settings, own=episode.own if watched else None, named=named)
         for episode in opened
     ]
     return TrackedRecording.of(opened, tracked, settings)
+
+
+def opened_with_settings(
+    recording: Recording | str | Path,
+    radar: wl.Radar | str | Path | None,
+    vessels: wl.VesselModels | str | None,
+    own: OwnShipMotion | str | Path | None,
+    config: Settings | wl.TrackerConfig | str | Path | None,
+    azimuth: str,
+) -> tuple[Recording, Settings]:
+    """The recording and the settings of :func:`track_recording`."""
+    settings = read_settings(config, radar, vessels)
+    opened = open_recording(recording, own, period_s=settings.period_s, azimuth=azimuth)
+    if not isinstance(radar, wl.Radar):
+        settings = settings.knowing(opened.radar)
+    return opened, settings
 
 
 def track_episode(

@@ -15,10 +15,15 @@ from wakeline._brief import brief, many
 from wakeline._progress import progress
 from wakeline.recording import OwnShipMotion, Recording
 
-from .opening import open_recording
-from .settings import Settings, read_settings
+from .settings import Settings
 from .track_plots import TrackPlots, plot_sensor
-from .tracked import TrackedEpisode, has_names, median_step_s, track_episode
+from .tracked import (
+    TrackedEpisode,
+    has_names,
+    median_step_s,
+    opened_with_settings,
+    track_episode,
+)
 
 _ROUNDS = 6
 _PASSES = 2  # in which outliers are found
@@ -159,10 +164,7 @@ def tune(
     True
     >>> tracks = wl.track_recording("joyride", config=tuned.settings)
     """
-    given = read_settings(config, radar, vessels)
-    opened = open_recording(recording, own, period_s=given.period_s, azimuth=azimuth)
-    if not isinstance(radar, wl.Radar):
-        given = given.knowing(opened.radar)
+    opened, given = opened_with_settings(recording, radar, vessels, own, config, azimuth)
     state, widest = _State(given), given
     for _ in progress(range(_ROUNDS), _ROUNDS, "tuning"):
         episodes = list(_tracked(opened, widest))
