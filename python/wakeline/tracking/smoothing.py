@@ -50,10 +50,11 @@ def smooth_episode(
     rows = tracks if time_s is None else _rows_at(tracks, in_a_row("time_s", time_s), ahead_s)
     state, covariance = rows.state.copy(), rows.covariance.copy()
     modes = rows.mode_probability.copy()
+    plots = TrackPlots.of(tracked)
     for track_id in rows.ids():
         known, wanted = tracks[track_id], rows.track_id == track_id
-        plots = TrackPlots.of(tracked, int(track_id)).near(known, radar, _OWN_PLOTS)
-        found = _smoothed(estimator, sensor, known, plots, rows.time_s[wanted])
+        near = plots[track_id].near(known, radar, _OWN_PLOTS)
+        found = _smoothed(estimator, sensor, known, near, rows.time_s[wanted])
         state[wanted], covariance[wanted], modes[wanted] = found
     smoothed = replace(rows, state=state, covariance=covariance, mode_probability=modes)
     own = tracked.episode.own if tracked.watches_own else None

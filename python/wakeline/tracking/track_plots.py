@@ -1,4 +1,4 @@
-"""The plots of one track, and how a filter reads them."""
+"""The plots of tracks, and how a filter reads them."""
 
 from __future__ import annotations
 
@@ -23,10 +23,12 @@ def plot_sensor(radar: wl.Radar) -> wl.ConvertedRangeBearing:
 
 @dataclass(frozen=True)
 class TrackPlots:
-    """Plots of one track, sorted by time.
+    """Plots of an episode or of one of its tracks, sorted by time.
 
     Attributes
     ----------
+    track_id : ndarray (n,)
+        The track to which each plot most probably belongs.
     time_s : ndarray (n,)
     range_bearing : ndarray (n, 2)
         Range in metres and bearing in radians.
@@ -34,28 +36,34 @@ class TrackPlots:
         Own ship at the time of each plot, north and east.
     """
 
+    track_id: np.ndarray
     time_s: np.ndarray
     range_bearing: np.ndarray
     own_m: np.ndarray
 
     @classmethod
-    def of(cls, tracked: TrackedEpisode, track_id: int) -> TrackPlots:
-        """The plots that most probably belong to a track."""
-        times, readings, own = [np.zeros(0)], [np.zeros((0, 2))], [np.zeros((0, 2))]
-        for scan, ids in zip(tracked.episode.scans, tracked.plot_track_id, strict=True):
-            mine = np.asarray(ids) == track_id
-            times.append(scan.plot_time_s[mine])
-            readings.append(scan.range_bearing[mine])
-            own.append(np.column_stack([scan.own_north_m, scan.own_east_m])[mine])
-        plots = cls(np.concatenate(times), np.vstack(readings), np.vstack(own))
+    def of(cls, tracked: TrackedEpisode) -> TrackPlots:
+        """The plots of an episode."""
+        scans = tracked.episode.scans
+        own = (np.column_stack([scan.own_north_m, scan.own_east_m]) for scan in scans)
+        plots = cls(
+            np.concatenate([np.zeros(0, dtype=int), *tracked.plot_track_id]),
+            np.concatenate([np.zeros(0), *(scan.plot_time_s for scan in scans)]),
+            np.vstack([np.zeros((0, 2)), *(scan.range_bearing for scan in scans)]),
+            np.vstack([np.zeros((0, 2)), *own]),
+        )
         return plots.where(np.argsort(plots.time_s, kind="stable"))
 
     def __len__(self) -> int:
         return len(self.time_s)
 
+    def __getitem__(self, track_id: str | int) -> TrackPlots:
+        """The plots of one track."""
+        return self.where(self.track_id == int(track_id))
+
     def where(self, chosen: np.ndarray) -> TrackPlots:
         """The chosen plots, by mask or by index."""
-        return TrackPlots(self.time_s[chosen], self.range_bearing[chosen], self.own_m[chosen])
+        return TrackPlots(*(column[chosen] for column in vars(self).values()))
 
     @property
     def position_m(self) -> np.ndarray:
@@ -96,6 +104,5 @@ class TrackPlots:
         expected_m = track.state[row][:, 0::2] + ahead_s * track.state[row][:, 1::2]
         error_m = self.position_m - expected_m
         covariance = track.covariance[row][:, 0::2, 0::2] + self.covariance(radar)
-        whitened = np.linalg.solve(covariance, error_m[:, :, np.newaxis])[:, :, 0]
-        inside = np.sum(error_m * whitened, axis=1) < wl.chi_square_quantile(probability, 2)
+        inside = wl.eval.nees(error_m, covariance) < wl.chi_square_quantile(probability, 2)
         return self.where(inside & (self.time_s > track.time_s[0]))

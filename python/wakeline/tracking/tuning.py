@@ -227,8 +227,9 @@ def _tracked(recording: Recording, settings: Settings) -> Iterator[TrackedEpisod
 
 def _runs_of(tracked: TrackedEpisode, settings: Settings) -> Iterator[_Run]:
     radar = settings.make_radar(median_step_s(tracked.episode))
+    every = TrackPlots.of(tracked)
     for track in tracked.tracks:
-        plots = TrackPlots.of(tracked, int(track.track_id[0])).near(track, radar, _OWN_PLOTS)
+        plots = every[track.track_id[0]].near(track, radar, _OWN_PLOTS)
         moved_m = np.hypot(*(track.state[-1] - track.state[0])[0::2])
         std_m = math.sqrt(np.trace(track.covariance[0, 0::2, 0::2]))
         if len(plots) >= _LEAST_RUN and moved_m > _MOVED * std_m:
@@ -424,8 +425,7 @@ def _read(settings: Settings, runs: Sequence[_Run]) -> _Read:
 
 def _log_density(error: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Logarithm of a normal density of errors (n, 2), and their squared distance."""
-    whitened = np.linalg.solve(covariance, error[:, :, np.newaxis])[:, :, 0]
-    distance = np.sum(error * whitened, axis=1)
+    distance = wl.eval.nees(error, covariance)
     return -0.5 * (distance + np.log(np.linalg.det(covariance))) - math.log(2 * math.pi), distance
 
 
