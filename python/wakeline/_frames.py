@@ -39,13 +39,12 @@ def run_table(result: RunResult, time_s: Any = None) -> DataFrame:
     """The result of a run as a table; as documented at `RunResult.to_pandas`."""
     pandas = _library("pandas")
     shape = np.shape(result.nis)
-    scan = _scans(time_s, shape[-1])
     name = "scan" if time_s is None else "time_s"
-    axes = [range(length) for length in shape[:-1]] + [scan]
-    names = ["run", name] if len(shape) > 1 else [name]
-    index = pandas.MultiIndex.from_product(axes, names=names) if len(axes) > 1 else axes[0]
-    table = pandas.DataFrame(dict(_columns(result, len(shape))), index=index)
-    return table if len(axes) > 1 else table.rename_axis(name)
+    index = pandas.Index(_scans(time_s, shape[-1]), name=name)
+    if len(shape) > 1:
+        runs = pandas.RangeIndex(shape[0], name="run")
+        index = pandas.MultiIndex.from_product([runs, index])
+    return pandas.DataFrame(dict(_columns(result, len(shape))), index=index)
 
 
 def run_dataset(result: RunResult, time_s: Any = None) -> Dataset:
