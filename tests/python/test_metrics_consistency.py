@@ -1,4 +1,4 @@
-"""Consistency as a run goes on: windows of NIS, whiteness of innovations."""
+"""Consistency of one run: windows of NIS, whiteness of innovations."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Consistency of errors and covariances, over many runs and as one run goes on."""
+"""Consistency of errors and covariances, over many runs and in windows of one run."""
 
 from __future__ import annotations
 
