@@ -220,6 +220,15 @@ def test_track_with_truth_scores_as_well(tmp_path, capsys):
     assert "coverage" in capsys.readouterr().out
 
 
+def test_bundled_recordings_are_tracked_by_name_with_their_radar(tmp_path, capsys):
+    assert track("joyride", "--out", tmp_path / "name") == 0
+    assert "radar joyride" in capsys.readouterr().out
+    files = [bundled("joyride", "plots"), "--own", bundled("joyride", "scans")]
+    assert track(*files, "--radar", "joyride", "--out", tmp_path / "files") == 0
+    named, read = (read_tracks(tmp_path / place / "tracks.csv") for place in ("name", "files"))
+    np.testing.assert_array_equal(named.state, read.state)
+
+
 def test_each_scenario_starts_afresh_and_is_carried_to_the_output(tmp_path):
     rows = [(f"run {k}", *row) for k in (1, 2) for row in boat(20, start_s=1000.0 * k)]
     plots = write_plots(tmp_path / "plots.csv", rows, "scenario,time_s,north_m,east_m")

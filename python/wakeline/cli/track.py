@@ -12,6 +12,7 @@ from typing import Any
 
 from wakeline import FilterError, metrics
 from wakeline._brief import many
+from wakeline.extraction import VideoRecording
 from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
 from wakeline.tracking import (
@@ -199,6 +200,8 @@ def _radar_text(
 ) -> str:
     """Source of the radar parameters."""
     if used != given:
+        if not isinstance(recording, VideoRecording):
+            return f"radar {recording.name}"
         range_std_m, bearing_std_rad = recording.plot_std
         errors = f"{range_std_m:.1f} m, {math.degrees(bearing_std_rad):.2f}°"
         return f"radar errors estimated from its echoes: {errors}"
