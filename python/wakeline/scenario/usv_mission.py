@@ -576,7 +576,7 @@ def _nees(error: np.ndarray, covariance: np.ndarray | None) -> np.ndarray:
     if covariance is None:
         return np.full(len(error), np.nan)
     error[:, 4] = wl.wrap_angle(error[:, 4])
-    return np.sum(error * np.linalg.solve(covariance, error[..., None])[..., 0], axis=-1)
+    return wl.metrics.nees(error, covariance)
 
 
 def _distance_m(position_m: np.ndarray, path_m: np.ndarray) -> np.ndarray:

@@ -144,8 +144,7 @@ def evaluate(estimator: Estimator, mission: UsvMission, logs: UsvLogs) -> Outcom
         error = mean - _motion(truth)
         error[:, 4] = wl.wrap_angle(error[:, 4])
         squared += _shown(error[:, [0, 1, 4]]) ** 2 / runs
-        weighed = np.linalg.solve(covariance, error[..., None])[..., 0]
-        nees += np.sum(error * weighed, axis=-1) / runs
+        nees += wl.metrics.nees(error, covariance) / runs
     return Outcome(squared[1:], nees[1:])
 
 
