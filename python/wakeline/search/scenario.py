@@ -100,7 +100,7 @@ def example_names() -> list[str]:
 
 
 def read_scenario(source: str | Path) -> SearchScenario:
-    """Read a scenario from a TOML file; cpp/docs/theory/search.md describes its keys.
+    """Read a scenario from a TOML file; cpp/docs/search.md describes its keys.
 
     Parameters
     ----------
