@@ -1,6 +1,7 @@
 """Find the offsets of a radar from position reports of a vessel, and track with them.
 
-Reports of one vessel every 10 s, as AIS or a friend's GNSS gives them.
+Reports of one vessel every 10 s, as AIS or a friend's GNSS gives them. Writes calibrate.png: the
+errors of the plots before and after.
 """
 
 import math
@@ -39,6 +40,7 @@ for scan in episode.scans:
     )
 
 found = calibration.solve()
+wl.plot.save(wl.plot.calibration_figure(found, ["", "boat"]), "calibrate.png")
 print(f"{found.matches:.0f} plots of the vessel")
 for name, offset, scale, unit in (
     ("range", found.range_m, 1.0, "m"),

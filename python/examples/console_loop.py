@@ -3,6 +3,8 @@
 wl.track_recording does this for a whole recording; a console takes each scan as it comes.
 """
 
+import math
+
 import wakeline as wl
 
 recording = wl.recording.load("autoferry")
@@ -31,5 +33,8 @@ for scan in recording.episodes[0].scans:
         print(f"{time_s:14.1f} s  tracks {first} and {second} will be {cpa_m:.0f} m apart")
 
 tracks = tracker.tracks()
-for track_id, (north_m, _, east_m, _) in zip(tracks.track_id, tracks.mean, strict=True):
-    print(f"track {track_id} at {north_m:8.1f} N {east_m:8.1f} E")
+print("track   north m   east m  speed m/s  existence")
+for k, (north_m, vnorth_mps, east_m, veast_mps) in enumerate(tracks.mean):
+    speed_mps = math.hypot(vnorth_mps, veast_mps)
+    row = f"{tracks.track_id[k]:5d}  {north_m:8.1f} {east_m:8.1f}  {speed_mps:9.1f}"
+    print(f"{row}  {tracks.existence[k]:9.3f}")

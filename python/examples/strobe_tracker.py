@@ -1,16 +1,13 @@
 """Radar video to tracks by strobes: each vessel is measured where it is expected.
 
 A pilot boat overtakes a ship 60 m abeam. The operator designates the boat; the ship is acquired
-from a plot. The estimator is chosen by name. Writes strobes.png: the echoes in the last revolution
-with the strobes of both tracks.
+from a plot. Writes strobe_tracker.png: the echoes in the last revolution with both strobes.
 """
 
 import numpy as np
 
 import wakeline as wl
 from wakeline import plot, scenario
-
-ESTIMATORS = {"fuzzy": wl.FuzzyAlphaBeta(), "bayesian": wl.BayesianAlphaBeta()}
 
 
 def vessel(north_m, east_m, veast_mps, length_m):
@@ -31,7 +28,7 @@ simulator = scenario.RadarVideoSimulator(
 boat, ship = vessel(1200.0, -260.0, 9.0, 15.0), vessel(1260.0, -100.0, 5.0, 25.0)
 
 config = wl.StrobeTrackerConfig(least_amplitude=60, radius_m=35.0)
-tracker = wl.StrobeTracker(radar, config, ESTIMATORS["bayesian"])
+tracker = wl.StrobeTracker(radar, config, wl.BayesianAlphaBeta())
 extractor = wl.PlotExtractor(threshold_factor=5.0, min_cells=6)
 tracker.designate(0.0, 1200.0, -260.0, position_std_m=10.0)
 shared = 0
@@ -45,10 +42,7 @@ for turn in simulator.turns({"boat": boat, "ship": ship}, 32, seed=1):
         for event in readings.events:
             if event.kind in ("confirmed", "lost"):
                 print(f"{event.time_s:5.1f} s: track {event.track_id} {event.kind}")
-        strobes += [
-            plot.circle_outline(center_m, radius_m)
-            for center_m, radius_m in zip(readings.predicted_m, readings.radius_m, strict=True)
-        ]
+        strobes += map(plot.circle_outline, readings.predicted_m, readings.radius_m)
 
 tracks = tracker.tracks()
 for track_id, (north_m, vn, east_m, ve) in zip(tracks.track_id, tracks.mean, strict=True):
@@ -63,4 +57,4 @@ axes = plot.ppi(
     rings=False,
     amplitude_range=(0.0, 255.0),
 )
-plot.save(axes.figure, "strobes.png")
+plot.save(axes.figure, "strobe_tracker.png")
