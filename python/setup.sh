@@ -4,6 +4,8 @@
 #   source setup.sh tests    the same, the C++ test libraries, ccache, the Python test tools and, on Debian, a browser
 #   source setup.sh sanitize as tests, and clang 14 with its sanitizers
 #
+# A caller may list more programs, packages of their names, in `programs`.
+#
 # Installs with apt what is missing and nothing else, keeps everything of its own in build/, and leaves in the
 # environment: root (the checkout), python and bin (of the virtual environment), CXX (the C++ compiler) and jobs.
 
@@ -77,6 +79,7 @@ missing_packages() {
     command -v gpsbabel >/dev/null || echo gpsbabel
     command -v ogrinfo >/dev/null || echo gdal-bin
   fi
+  for program in "${programs[@]}"; do command -v "$program" >/dev/null || echo "$program"; done
   if [[ $purpose == sanitize ]]; then has_sanitizers || echo clang-14 libclang-rt-14-dev; fi
 }
 

@@ -1,7 +1,9 @@
-"""The site of the documentation: its pages of Python, and that it builds without warnings."""
+"""The site of the documentation: examples, notebooks, the references of Python and C++."""
 
-import importlib.util
 import logging
+import re
+import shutil
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -9,19 +11,21 @@ import pytest
 import wakeline as wl
 
 CPP = Path(__file__).parents[2] / "cpp"
-spec = importlib.util.spec_from_file_location("site_pages", CPP / "docs/site_pages.py")
-site_pages = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(site_pages)
+with pytest.MonkeyPatch.context() as patch:
+    patch.syspath_prepend(CPP / "docs/site")
+    import cpp_reference
+    import gallery
+    import python_reference
 
 
 @pytest.fixture(scope="module")
 def pages():
-    return dict(site_pages.pages())
+    return dict(python_reference.pages())
 
 
 def test_every_module_of_the_package_has_a_page(pages):
-    nouns = {name for name in wl.__all__ if name in site_pages.PACKAGES}
-    assert nouns | {*site_pages.ENGINE, "index"} == set(pages)
+    nouns = {name for name in wl.__all__ if name in python_reference.PACKAGES}
+    assert nouns | {*python_reference.ENGINE, "index"} == set(pages)
     left_out = {name for name in wl._MODULES if name not in pages}
     assert left_out == {"study"}, "studies have pages of their own"
 
@@ -35,33 +39,57 @@ def test_every_public_class_and_function_is_described(pages):
 
 def test_public_names_have_docstrings(caplog):
     with caplog.at_level(logging.WARNING, "mkdocs.plugins.wakeline"):
-        list(site_pages.pages())
+        list(python_reference.pages())
     assert caplog.messages == []
 
 
 def test_parameters_are_a_list_and_examples_code():
-    text = site_pages.as_markdown(wl.track_recording.__doc__)
+    text = python_reference.as_markdown(wl.track_recording.__doc__)
     assert "\n- `recording` (Recording, str or Path): A recording" in text
     assert "```python\n>>> import wakeline as wl" in text
     assert "----" not in text
 
 
 def test_every_example_is_shown():
-    text = site_pages.examples()
-    for file in (CPP.parent / "python/examples").glob("*.py"):
-        assert f"`{file.name}`" in text
-    assert "also in C++" in text
+    files = {file.stem for file in (CPP.parent / "python/examples").glob("*.py")}
+    assert {one.name for one in gallery.examples()} == files - {gallery.PEERS}
+    assert set(gallery.ORDER) <= files
+
+
+@pytest.mark.parametrize("notebook", gallery.notebooks(), ids=lambda file: file.stem)
+def test_the_notebook_runs(notebook, tmp_path):
+    for module in ("nbconvert", "nbclient", "ipykernel", "matplotlib"):
+        pytest.importorskip(module)
+    gallery.run_notebook(notebook, tmp_path)
+    page = (tmp_path / f"{notebook.stem}.md").read_text(encoding="utf-8")
+    assert page.startswith(f"# {gallery.title_of(notebook)}\n")
+    drawn = gallery.pictures(tmp_path)
+    assert drawn
+    assert all(f"{file.name})" in page for file in drawn)
 
 
 def test_calls_of_the_engine_have_names_and_defaults():
     first = "run(self: a.b[c, d], z: X | None = None, n: int = 3, *, f: F = F(a=1, b=2)) -> None"
-    assert site_pages.arguments_of(first) == ["z=None", "n=3", "*", "f=F(a=1, b=2)"]
+    assert python_reference.arguments_of(first) == ["z=None", "n=3", "*", "f=F(a=1, b=2)"]
 
 
-def test_the_site_builds_without_warnings(tmp_path):
-    build = pytest.importorskip("mkdocs.commands.build")
+def headings_of(page):
+    """Names in the headings of a page of a reference."""
+    return set(re.findall(r"<h[23] id=\"[^\"]*\"><code>([\w.:~]+)</code>", page.read_text()))
+
+
+def test_the_site_builds_without_warnings_and_has_every_public_name(tmp_path):
+    pytest.importorskip("material")
+    if shutil.which("doxygen") is None:
+        pytest.skip("no doxygen")
+    from mkdocs.commands import build
     from mkdocs.config import load_config
 
     config = load_config(str(CPP / "mkdocs.yml"), site_dir=str(tmp_path), strict=True)
     build.build(config)
-    assert (tmp_path / "api/filter.html").is_file()
+    for name in python_reference.MODULES:
+        names = python_reference.public_names(import_module(f"wakeline.{name}"))
+        submodules = set(dir(wl)) & set(python_reference.MODULES) & set(names)
+        assert set(names) - submodules <= headings_of(tmp_path / f"api/{name}.html"), name
+    assert "Imm" in headings_of(tmp_path / "cpp/multimodel.html")
+    assert {one.noun for one in cpp_reference.entities()} - {""} == set(cpp_reference.NOUNS)

@@ -1,23 +1,19 @@
-"""Pages of the site made when it is built: the reference of Python, from the docstrings.
+"""The reference of Python, from the docstrings.
 
-A hook of MkDocs (`cpp/mkdocs.yml`). A public name without a docstring is a warning, and warnings
-are errors where the site is built.
+A public name or field without a docstring is a warning, and warnings are errors where the site is
+built.
 """
 
 from __future__ import annotations
 
-import ast
 import inspect
 import logging
-import posixpath
 import re
 from collections.abc import Iterator
 from importlib import import_module
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-ROOT = Path(__file__).parents[2]
 log = logging.getLogger("mkdocs.plugins.wakeline")
 
 # In the order of the site; the first ones are also at the top level of the package.
@@ -49,52 +45,10 @@ PACKAGES = (
     "extraction",
     "live",
 )
+MODULES = (*ENGINE, *PACKAGES)
 _SECTION = re.compile(r"^([A-Z][A-Za-z ]+)\n-{3,}\n", re.MULTILINE)
 _ROLE = re.compile(r":(?:class|func|meth|mod|attr):`~?([^`]+)`")
-_EXAMPLES = """\
-# Examples
-
-Programs of `python/examples`, which the tests run. Those of the same name in `cpp/examples` do the
-same in C++."""
-_LINK = re.compile(r"\[([^\]]+)\]\(([^)\s:]+)\)")
 _LISTS = ("Parameters", "Attributes", "Returns", "Raises")
-
-
-def on_files(files: Any, config: Any) -> Any:
-    """Add the pages (an event of MkDocs)."""
-    from mkdocs.structure.files import File
-
-    for name, text in pages():
-        files.append(File.generated(config, f"api/{name}.md", content=text))
-    files.append(File.generated(config, "examples.md", content=examples()))
-    return files
-
-
-def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
-    """Keep only the text of links to files outside the documentation (an event of MkDocs)."""
-    folder = posixpath.dirname(page.file.src_uri)
-
-    def kept(link: re.Match[str]) -> str:
-        target = posixpath.normpath(posixpath.join(folder, link[2].partition("#")[0]))
-        return link[1] if target.startswith("../") else link[0]
-
-    return _LINK.sub(kept, markdown)
-
-
-def examples() -> str:
-    """The page of the programs in `python/examples`, which the tests run."""
-    parts = [_EXAMPLES]
-    for file in sorted((ROOT / "python/examples").glob("*.py")):
-        text = file.read_text(encoding="utf-8")
-        about = ast.get_docstring(ast.parse(text)) or ""
-        code = text.split('"""', 2)[2].strip()
-        title, _, rest = about.partition("\n\n")
-        twin = ", also in C++" if (ROOT / f"cpp/examples/{file.stem}.cpp").exists() else ""
-        parts.append(
-            f"## {' '.join(title.split()).rstrip('.')}\n\n`{file.name}`{twin}\n\n{rest}\n\n"
-            f"```python\n{code}\n```"
-        )
-    return "\n\n".join(parts) + "\n"
 
 
 def pages() -> Iterator[tuple[str, str]]:
@@ -108,7 +62,7 @@ def pages() -> Iterator[tuple[str, str]]:
             about = first_sentence(import_module(f"wakeline.{name}").__doc__)
             lines.append(f"| [`wakeline.{name}`]({name}.md) | {about} |")
     yield "index", "\n".join(lines) + "\n"
-    for name in (*ENGINE, *PACKAGES):
+    for name in MODULES:
         yield name, "\n".join(page_of(import_module(f"wakeline.{name}"), name)) + "\n"
 
 
