@@ -240,7 +240,10 @@ void define_tables(py::module_& m) {
 void define_strobe_tracker(py::module_& m) {
   define_struct<StrobeTrackerConfig>(m, "StrobeTrackerConfig",
                                      "The rules by which the tracks of a StrobeTracker live.",
-                                     {.writable = true});
+                                     {.writable = true})
+      .def("next_radius_m", &StrobeTrackerConfig::next_radius_m, py::arg("radius_m"),
+           py::arg("seen"),
+           "Radius in metres of the next strobe after one with an echo, or without.");
   define_tables(m);
 
   py::class_<AnyStrobeTracker> tracker(m, "StrobeTracker",

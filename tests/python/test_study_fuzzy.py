@@ -186,7 +186,9 @@ def test_fitted_memberships_need_less_gate_and_cost_accuracy_on_the_straight(rep
 def meetings():
     """A few runs with a narrow and two wide gates."""
     return [
-        dense.meet(seed, kinds=["passing", "abreast"], distances_m=(30, 100), gates_m=(14, 35, 50))
+        dense.meet(
+            seed, kinds=["overtaking", "abreast"], distances_m=(30, 100), gates_m=(14, 35, 50)
+        )
         for seed in range(4)
     ]
 
@@ -208,7 +210,7 @@ def test_a_lone_craft_is_never_captured(meetings):
 
 def test_captures_grow_with_the_gate(meetings):
     assert captured(meetings, "abreast_30m", 14) < captured(meetings, "abreast_30m", 35)
-    assert captured(meetings, "passing_30m", 14) < captured(meetings, "passing_30m", 50)
+    assert captured(meetings, "overtaking_30m", 14) < captured(meetings, "overtaking_30m", 50)
 
 
 def test_captures_grow_as_the_neighbor_comes_closer(meetings):
@@ -218,7 +220,7 @@ def test_captures_grow_as_the_neighbor_comes_closer(meetings):
 def test_a_neighbor_out_of_reach_of_a_narrow_strobe_changes_nothing(meetings):
     for run in meetings:
         for name in fuzzy_alpha_beta.LABELS:
-            assert run["passing_100m", name, 14] == run[dense.ALONE, name, 14]
+            assert run["overtaking_100m", name, 14] == run[dense.ALONE, name, 14]
 
 
 @pytest.mark.parametrize("kind", dense.KINDS)

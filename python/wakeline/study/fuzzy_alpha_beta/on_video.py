@@ -40,7 +40,9 @@ class Loop:
     ----------
     estimator : object
     gate_m : float
-        Radius of the strobe.
+        Radius of the strobe, which grows after a miss and shrinks again.
+    radius_m : float
+        Current radius, by the rules of `StrobeTrackerConfig`.
     predicted_m, estimate_m : list of (2,) arrays
         North and east: center of the strobe, and the estimate afterwards.
     echoes : list of (2,) arrays
@@ -55,6 +57,11 @@ class Loop:
     echoes: list[np.ndarray] = field(default_factory=list)
     estimate_m: list[np.ndarray] = field(default_factory=list)
     misses: int = 0
+    radius_m: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.radius_m = self.gate_m
+        self._rules = wl.StrobeTrackerConfig(radius_m=self.gate_m)
 
     @property
     def lost(self) -> bool:
@@ -78,23 +85,27 @@ class Loop:
             return
         self.estimator.predict(period_s)
         self.predicted_m.append(place_of(self.estimator))
-        echo = strobe(turn, self.predicted_m[-1], self.gate_m)
+        echo = strobe(turn, self.predicted_m[-1], self.radius_m)
         if echo is not None:
             self.estimator.update(SENSOR, echo)
         self.misses = 0 if echo is not None else self.misses + 1
+        self.radius_m = self._rules.next_radius_m(self.radius_m, seen=echo is not None)
         self.echoes.append(_UNKNOWN if echo is None else echo)
         self.estimate_m.append(place_of(self.estimator))
 
 
 class Acquisition:
-    """The first two plots, from wide strobes around the truth: an operator designates the craft."""
+    """The first two plots, the nearest in wide strobes around the truth.
+
+    An operator points at the craft, not at the strongest echo near it.
+    """
 
     def __init__(self) -> None:
         self._plots: list[np.ndarray] = []
 
     def start(self, turn: RadarVideo, craft_m: np.ndarray, period_s: float) -> wl.Gaussian | None:
         """Take a revolution; the start once two in a row have an echo."""
-        plot = strobe(turn, craft_m, ACQUIRED_WITH_M)
+        plot = strobe(turn, craft_m, ACQUIRED_WITH_M, several="nearest")
         self._plots = [] if plot is None else [*self._plots, plot]
         return wl.two_point(SENSOR, *self._plots, period_s) if len(self._plots) == 2 else None
 
@@ -162,14 +173,16 @@ def video_scene(situation: HardTurn, seed: int, margin_m: float = _MARGIN_M) -> 
     return replace(scene, radar=replace(scene.radar, snr_db=_SNR_DB, sea=sea))
 
 
-def strobe(turn: RadarVideo, around_m: np.ndarray, radius_m: float) -> np.ndarray | None:
+def strobe(
+    turn: RadarVideo, around_m: np.ndarray, radius_m: float, several: str = "all"
+) -> np.ndarray | None:
     """Range and bearing of the centroid in a circular strobe; None without an echo."""
     echo = wl.gating.strobe_echo(
         turn,
         wl.RadiusGate(radius_m=radius_m),
         around_m,
         least_amplitude=LEAST_AMPLITUDE,
-        several="strongest",
+        several=several,
     )
     return np.array([echo.range_m, echo.bearing_rad]) if echo else None
 
