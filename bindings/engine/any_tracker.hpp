@@ -16,6 +16,7 @@
 #include "support/arguments.hpp"
 #include "support/thread_lock.hpp"
 #include "support/types.hpp"
+#include "track_table.hpp"
 #include "wakeline/track/late_window.hpp"
 #include "wakeline/track/tracker.hpp"
 #include "wakeline/track/vessel_models.hpp"
@@ -101,18 +102,6 @@ struct PyReportResult {
   Status status;
   std::int64_t track_id;
   std::vector<Event> events;
-};
-
-/// Tracks as arrays.
-struct PyTracks {
-  py::array_t<std::int64_t> track_id;
-  std::vector<std::string> status;
-  py::array_t<double> time_s, mean, covariance, mode_probability, nis, existence, visibility;
-  py::object turn_rate_rad_s;  ///< None where no model changes its turn rate
-  py::array_t<std::int64_t> hits, misses;
-  std::vector<std::string> name;
-  std::vector<std::string> identity;
-  py::array_t<double> identity_probability, identity_time_s;
 };
 
 /// Radars by number, of which some may have been removed: one alone is not a list.

@@ -190,16 +190,16 @@ ValueError
     When a shape does not fit.)");
   m.def(
       "consistency_bounds",
-      [](double confidence, int dof, long samples) {
+      [](double confidence, int dof, double samples) {
         require(confidence > 0.0 && confidence < 1.0, "confidence", "between 0 and 1", confidence);
         require(dof >= 1, "dof", "at least 1", dof);
-        require(samples >= 1, "samples", "at least 1", static_cast<double>(samples));
+        require(samples >= 1.0, "samples", "at least 1", samples);
         const ConsistencyBounds bounds = consistency_bounds(confidence, dof, samples);
         return py::make_tuple(bounds.lower, bounds.upper);
       },
       py::arg("confidence"), py::arg("dof"), py::arg("samples"),
       "(lower, upper) bounds of the average NEES or NIS of that many samples of a consistent "
-      "estimator.");
+      "estimator; a mean with weights w counts as (sum w)^2 / sum w^2 samples.");
   m.def("cramer_rao_bound", &bound_of, py::arg("transition"), py::arg("process_noise"),
         py::arg("states"), py::arg("sensor"), py::arg("start_covariance"),
         py::arg("detection_probability") = 1.0,

@@ -12,6 +12,7 @@
 #include "support/fields.hpp"
 #include "support/types.hpp"
 #include "trackers.hpp"
+#include "wakeline/eval/consistency.hpp"
 
 namespace wakeline::python {
 
@@ -271,6 +272,35 @@ PyReport partial(AnyTracker& tracker, const char* what, PositionPart part, int s
                   [&] { return tracker.visit([&](auto& one) { return one.partial(scan); }); });
 }
 
+/// What a mean NIS and a whiteness of so many plots are within with a probability of 0.95.
+struct Bounds {
+  ConsistencyBounds mean_nis;
+  double whiteness;
+};
+
+/// Of a number of plots, from 0; more than the last change nothing that could be seen.
+const std::vector<Bounds>& bounds_by_plots() {
+  constexpr double kConfidence = 0.95;
+  constexpr int kMost = 100, kDof = InnovationConsistency::kMeasurements;
+  static const std::vector<Bounds> all = [] {
+    std::vector<Bounds> bounds;
+    for (int plots = 0; plots <= kMost; ++plots) {
+      const double pairs = InnovationConsistency::samples(plots - 1);
+      bounds.push_back(
+          {consistency_bounds(kConfidence, kDof, InnovationConsistency::samples(plots)),
+           plots < 2 ? std::numeric_limits<double>::quiet_NaN()
+                     : std::sqrt(chi_square_quantile(kConfidence, 1.0) / (kDof * pairs))});
+    }
+    return bounds;
+  }();
+  return all;
+}
+
+const Bounds& bounds_of(const Track& track) {
+  const std::vector<Bounds>& all = bounds_by_plots();
+  return all[std::min(static_cast<std::size_t>(track.consistency.plots()), all.size() - 1)];
+}
+
 template <class Estimator, class Steps>
 PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<double>& time_s,
                 bool tentative) {
@@ -300,7 +330,15 @@ PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<do
       numbers([&](const T& t) {
         const Identity* identity = tracker.identity_of(t);
         return identity == nullptr ? std::numeric_limits<double>::quiet_NaN() : identity->time_s;
-      })};
+      }),
+      numbers([](const T& t) { return t.consistency.mean_nis(); }),
+      vectors_of<2>(wanted,
+                    [](const T& t) {
+                      const ConsistencyBounds& bounds = bounds_of(t).mean_nis;
+                      return Vec<double, 2>(bounds.lower, bounds.upper);
+                    }),
+      numbers([](const T& t) { return t.consistency.whiteness(); }),
+      numbers([](const T& t) { return bounds_of(t).whiteness; })};
   for (const Track& track : wanted) {
     table.status.emplace_back(status_name(track.status));
     table.name.emplace_back(track.label());
@@ -431,7 +469,8 @@ void define_track(py::module_& parent) {
                 &PyTracks::covariance, &PyTracks::mode_probability, &PyTracks::nis,
                 &PyTracks::existence, &PyTracks::visibility, &PyTracks::turn_rate_rad_s,
                 &PyTracks::hits, &PyTracks::misses, &PyTracks::name, &PyTracks::identity,
-                &PyTracks::identity_probability, &PyTracks::identity_time_s);
+                &PyTracks::identity_probability, &PyTracks::identity_time_s, &PyTracks::mean_nis,
+                &PyTracks::mean_nis_bounds, &PyTracks::whiteness, &PyTracks::whiteness_bound);
   table.def_readonly("track_id", &PyTracks::track_id, "(k,)")
       .def_readonly("status", &PyTracks::status, "tentative, confirmed, coasting or held")
       .def_readonly("time_s", &PyTracks::time_s, "(k,) of the belief")
@@ -453,10 +492,24 @@ void define_track(py::module_& parent) {
                     "(k,) how probable that is; 0 without an identity")
       .def_readonly("identity_time_s", &PyTracks::identity_time_s,
                     "(k,) of the vessel's last report; NaN without an identity")
+      .def_readonly(
+          "mean_nis", &PyTracks::mean_nis,
+          "(k,) mean of the NIS of the plots of a track, 2 if its errors are as stated: of "
+          "those that were its plot with a probability above 0.5, each counting a tenth "
+          "less than the next; NaN before the first")
+      .def_readonly("mean_nis_bounds", &PyTracks::mean_nis_bounds,
+                    "(k, 2) between which it is with a probability of 0.95 if they are")
+      .def_readonly(
+          "whiteness", &PyTracks::whiteness,
+          "(k,) autocorrelation of the innovations of these plots, -1 to 1: positive where "
+          "the estimate lags; NaN before the second")
+      .def_readonly("whiteness_bound", &PyTracks::whiteness_bound,
+                    "(k,) below which its amount is with a probability of 0.95 if they are white")
       .def("__len__", [](const PyTracks& table) { return table.track_id.size(); })
       .def("__repr__", [](const PyTracks& table) {
         return "<TrackTable: " + many(table.track_id.size(), "track") + ">";
       });
+  define_track_lines(table);
 
   py::class_<AnyTracker> tracker(
       m, "Tracker",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import wakeline as wl
-from wakeline.metrics import whiteness, windowed_nis
+from wakeline.metrics import nis_by_mode, whiteness, windowed_nis
 
 
 def test_the_mean_is_of_the_last_readings_whatever_is_missing():
@@ -63,6 +63,54 @@ def test_a_track_is_watched_by_its_own_readings():
     watched = windowed_nis(track.nis, 15)
     assert watched.mean.shape == track.time_s.shape
     assert np.isfinite(watched.mean[-1])
+
+
+def test_a_tracker_watches_each_track_as_it_runs():
+    tracker = wl.Tracker(wl.Radar(range_std_m=10.0, bearing_std_rad=0.01, period_s=2.0))
+    rng = np.random.default_rng(4)
+    hits, weight, nis = 0, np.zeros(0), np.zeros(0)
+    compared = 0
+    for k in range(80):
+        position = np.array([1500.0 + 5.0 * k, -800.0 + 3.0 * k]) + rng.normal(0.0, 9.0, 2)
+        seen = [position] if rng.random() < 0.8 else np.zeros((0, 2))
+        range_m, bearing_rad = np.hypot(*np.transpose(seen)), np.arctan2(*np.transpose(seen)[::-1])
+        tracker.process(2.0 * k, range_m=range_m, bearing_rad=bearing_rad)
+        table = tracker.tracks(tentative=True)
+        if len(table) == 0:
+            continue
+        if table.hits[0] > hits and np.isfinite(table.nis[0]):
+            nis, weight = np.append(nis, table.nis[0]), np.append(0.9 * weight, 1.0)
+        hits = table.hits[0]
+        if len(nis) == 0:
+            continue
+        compared += 1
+        np.testing.assert_allclose(table.mean_nis[0], nis @ weight / weight.sum(), rtol=1e-9)
+        samples = weight.sum() ** 2 / (weight**2).sum()
+        bounds = wl.consistency_bounds(0.95, 2, max(samples, 1.0))
+        np.testing.assert_allclose(table.mean_nis_bounds[0], bounds, rtol=1e-3)
+        assert np.isfinite(table.whiteness[0]) == (len(nis) > 1)
+        assert np.isfinite(table.whiteness_bound[0]) == (len(nis) > 1)
+    assert compared > 60
+
+
+def test_nis_by_mode_is_the_mean_while_a_mode_was_probable():
+    rng = np.random.default_rng(5)
+    mode = rng.integers(0, 2, 4000)
+    nis = rng.chisquare(2, 4000) * np.where(mode == 1, 2.0, 1.0)
+    nis[::7] = np.nan
+    probability = np.zeros((4000, 3))
+    probability[np.arange(4000), mode] = 0.9
+    probability[np.arange(4000), 1 - mode] = 0.1
+    found = nis_by_mode(nis.reshape(4, 1000), probability.reshape(4, 1000, 3))
+    assert np.isnan([found.mean[2], found.lower[2], found.upper[2]]).all()
+    known = np.isfinite(nis)
+    expected = np.average(nis[known], weights=probability[known, 1])
+    np.testing.assert_allclose(found.mean[1], expected)
+    assert found.upper[1] < found.mean[1]
+    sure = nis_by_mode(nis, np.eye(2)[mode])
+    assert sure.lower[0] < sure.mean[0] < sure.upper[0]
+    with pytest.raises(ValueError, match="mode_probability"):
+        nis_by_mode(nis, probability[1:])
 
 
 @pytest.mark.parametrize("wrong", [{"window": 0}, {"dof": 0}, {"confidence": 1.0}])

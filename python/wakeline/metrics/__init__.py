@@ -5,7 +5,14 @@ States are ``[north, vnorth, east, veast]`` in metres and metres per second.
 
 from wakeline._engine.eval import SetDistance, nees, set_distance
 
-from .consistency import WindowedNis, share_inside, whiteness, windowed_nis
+from .consistency import (
+    NisByMode,
+    WindowedNis,
+    nis_by_mode,
+    share_inside,
+    whiteness,
+    windowed_nis,
+)
 from .curves import (
     SegmentFigures,
     by_segment,
@@ -24,6 +31,7 @@ gospa = set_distance  # by the name that the metric has
 __all__ = [
     "EpisodeScore",
     "Errors",
+    "NisByMode",
     "Score",
     "SegmentFigures",
     "SetDistance",
@@ -34,6 +42,7 @@ __all__ = [
     "detection_delays_scans",
     "gospa",
     "nees",
+    "nis_by_mode",
     "right_mode",
     "rmse",
     "rmse_curve",

@@ -126,6 +126,74 @@ def windowed_nis(
     return WindowedNis(mean, float(lower), float(upper))
 
 
+@dataclass(frozen=True)
+class NisByMode:
+    """Mean NIS of each mode, with its chi-square bounds.
+
+    Attributes
+    ----------
+    mean : ndarray (K,)
+        Of the readings, each weighted by the probability of the mode; NaN of a mode that there was
+        not.
+    lower, upper : ndarray (K,)
+        Bounds of the mean of a consistent estimator.
+    """
+
+    mean: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+
+
+def nis_by_mode(
+    nis: np.ndarray, mode_probability: np.ndarray, *, dof: int = 2, confidence: float = 0.95
+) -> NisByMode:
+    """Mean NIS while each mode was probable: which of the models has errors that are not as stated.
+
+    Parameters
+    ----------
+    nis : array_like (...)
+        Of runs or tracks; NaN of scans without a reading.
+    mode_probability : array_like (..., K)
+        Of the same scans.
+    dof : int
+        Numbers in a reading.
+    confidence : float
+        Probability that the mean of a consistent estimator is within the bounds.
+
+    Raises
+    ------
+    ValueError
+        When the shapes do not fit, or dof or confidence is invalid.
+
+    References
+    ----------
+    As of :func:`windowed_nis`.
+
+    Examples
+    --------
+    >>> import wakeline as wl
+    >>> tracks = wl.track_recording("joyride")
+    >>> wl.metrics.nis_by_mode(tracks.nis, tracks.mode_probability).mean.shape
+    (4,)
+    """
+    nis = np.atleast_1d(real_numbers("nis", nis))
+    weights = real_numbers("mode_probability", mode_probability)
+    plain_numbers(confidence=confidence)
+    whole_number("dof", dof, 1)
+    if weights.ndim < 2 or weights.shape[:-1] != nis.shape:
+        wanted = ", ".join([*map(str, nis.shape), "K"])
+        raise ValueError(f"mode_probability must have shape ({wanted}), got {weights.shape}")
+    known = np.isfinite(nis)
+    nis, weights = nis[known], weights[known]
+    total, squares = weights.sum(axis=0), (weights**2).sum(axis=0)
+    mean, lower, upper = np.full((3, weights.shape[-1]), np.nan)
+    for k in np.flatnonzero(total > 0.0).tolist():
+        mean[k] = weights[:, k] @ nis / total[k]
+        samples = max(total[k] ** 2 / squares[k], 1.0)
+        lower[k], upper[k] = eval.consistency_bounds(confidence, dof, samples)
+    return NisByMode(mean, lower, upper)
+
+
 def whiteness(
     innovation: np.ndarray, lag: int = 1, *, confidence: float = 0.95
 ) -> tuple[float, float]:

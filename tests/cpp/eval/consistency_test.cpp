@@ -89,7 +89,7 @@ TEST(ConsistencyBounds, AgreeWithTheTextbookExample) {
 
 TEST(ConsistencyBounds, NarrowAroundTheDofWithMoreRuns) {
   double width = 1e9;
-  for (const long runs : {1L, 10L, 100L, 10'000L}) {
+  for (const double runs : {1.0, 10.0, 100.0, 10'000.0}) {
     const auto bounds = consistency_bounds(0.95, 4, runs);
     EXPECT_TRUE(bounds.contains(4.0));
     EXPECT_LT(bounds.upper - bounds.lower, width);

@@ -43,16 +43,17 @@ struct ConsistencyBounds {
 
 /// Two-sided bounds of the average of `samples` independent NEES or NIS values with `dof` degrees
 /// of freedom each, which a consistent filter meets with probability `confidence`: χ²_{R n}
-/// quantiles at (1 ∓ confidence)/2, divided by R. NaN unless 0 < confidence < 1, dof > 0 and
-/// samples > 0. Source: Bar-Shalom, Li, Kirubarajan 2001, section 5.4.2.
+/// quantiles at (1 ∓ confidence)/2, divided by R. A mean with weights w counts as R = (Σ w)² / Σ w²
+/// samples. NaN unless 0 < confidence < 1, dof > 0 and samples > 0. Source: Bar-Shalom, Li,
+/// Kirubarajan 2001, section 5.4.2.
 [[nodiscard]] inline ConsistencyBounds consistency_bounds(double confidence, int dof,
-                                                          long samples) noexcept {
-  const double total_dof = static_cast<double>(dof) * static_cast<double>(samples);
-  if (!(confidence > 0.0 && confidence < 1.0) || dof <= 0 || samples <= 0)
+                                                          double samples) noexcept {
+  const double total_dof = static_cast<double>(dof) * samples;
+  if (!(confidence > 0.0 && confidence < 1.0) || dof <= 0 || !(samples > 0.0))
     return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   const double tail = 0.5 * (1.0 - confidence);
-  return {chi_square_quantile(tail, total_dof) / static_cast<double>(samples),
-          chi_square_quantile(1.0 - tail, total_dof) / static_cast<double>(samples)};
+  return {chi_square_quantile(tail, total_dof) / samples,
+          chi_square_quantile(1.0 - tail, total_dof) / samples};
 }
 
 /// Running average of NEES or NIS values, and its acceptance interval for a consistent filter.
@@ -77,7 +78,7 @@ class ConsistencyAverage {
   /// The bounds for the number of values added, which must be independent, i.e. from different
   /// runs.
   [[nodiscard]] ConsistencyBounds bounds(double confidence = 0.95) const noexcept {
-    return consistency_bounds(confidence, dof_, samples_);
+    return consistency_bounds(confidence, dof_, static_cast<double>(samples_));
   }
 
  private:

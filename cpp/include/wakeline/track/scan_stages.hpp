@@ -496,7 +496,7 @@ class ScanStages {
       if (scan.total > 0.0 && (may_miss || !readings_[k].empty()))
         update_existence(picture_.config, detection, scan, track, look_at(track).visibility);
       state().ownership.add(track, candidates_of(track), weights[k], probabilities);
-      const bool seen = probabilities.any > 0.5;
+      const bool seen = is_seen(probabilities);
       if (!seen && !may_miss) continue;
       const bool shared = !seen && seen_alone(detection_of(track), candidates_of(track)) > 0.5;
       note_look(track, seen, shared);
@@ -522,12 +522,18 @@ class ScanStages {
     return track.confirmed() && track.scans > kScans && state().look(track).misses < kMisses;
   }
 
+  [[nodiscard]] static bool is_seen(const AssociationProbabilities& probabilities) noexcept {
+    return probabilities.any > 0.5;
+  }
+
   /// Notes what a track keeps of its most probable plot, before the track takes the updated belief.
   void note_best_plot(Track& track, const AssociationProbabilities& probabilities) noexcept {
     track.nis = std::numeric_limits<double>::quiet_NaN();
     if (probabilities.best < 0) return;
     const CandidatePlot& best = candidates_of(track)[std::size_t(probabilities.best)];
-    track.nis = innovation_squared(track.kinematics, best.z, best.nominal_r);
+    const Vec<double, 2> innovation = whitened_innovation(track.kinematics, best.z, best.nominal_r);
+    track.nis = innovation.squaredNorm();
+    if (is_seen(probabilities)) track.consistency.add(innovation);
     track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
   }
 

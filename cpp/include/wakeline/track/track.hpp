@@ -11,6 +11,7 @@
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/core/types.hpp"
+#include "wakeline/track/innovation_consistency.hpp"
 
 namespace wakeline {
 
@@ -159,6 +160,7 @@ struct Track {
   double existence = 0.0;        ///< probability that there is such a target
   double start_existence = 1.0;  ///< the same when it started
   double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the most probable plot of the scan
+  InnovationConsistency consistency;                      ///< of these plots, where it was seen
   int scans = 0;
   int hits = 0;
   int misses = 0;              ///< in a row
@@ -223,6 +225,7 @@ struct Track {
     fields(existence);
     fields(start_existence);
     fields(nis);
+    consistency.archive(fields);
     fields(scans);
     fields(hits);
     fields(misses);
