@@ -90,6 +90,41 @@ def test_lines_have_the_values_of_the_picture():
             np.testing.assert_allclose(row["covariance"], values["covariance"], rtol=1e-6)
 
 
+def test_lines_are_json_of_what_the_tracker_has():
+    session = wl.live.Session({"radar": [JOYRIDE], "session": {"origin_deg": [54.0, 10.0]}})
+    lines = written(session)
+    scans = list(joyride_lines(60))
+    for t, line in scans[: len(scans) // 2]:
+        session.feed(t, "x", json.dumps(line).encode())
+    name = 'Å "one"\t\\'
+    for track in session.tracker.tracks():
+        named = {"command": "rename", "track_id": track.track_id, "name": name}
+        assert session.command(named)["ok"]
+    for t, line in scans[len(scans) // 2 :]:
+        session.feed(t, "x", json.dumps(line).encode())
+    rows = {row["track_id"]: row for row in map(json.loads, lines) if row["type"] == "track"}
+    table = session.tracker.table()
+    assert len(table) > 0
+    for k, track_id in enumerate(table.track_id.tolist()):
+        row = rows[track_id]
+        assert (row["status"], row["name"]) == (table.status[k], table.name[k])
+        assert [row["hits"], row["misses"]] == [table.hits[k], table.misses[k]]
+        state = [row[key] for key in ("north_m", "vnorth_mps", "east_m", "veast_mps")]
+        np.testing.assert_allclose(state, table.mean[k], atol=1e-3)
+        np.testing.assert_allclose(row["covariance"], table.covariance[k], rtol=1e-6)
+        np.testing.assert_allclose(row["mode_probability"], table.mode_probability[k], atol=1e-5)
+        nis = [row["nis"][key] for key in ("mean", "lower", "upper")]
+        np.testing.assert_allclose(nis, [table.mean_nis[k], *table.mean_nis_bounds[k]], atol=1e-3)
+        whiteness = [row["whiteness"][key] for key in ("value", "bound")]
+        expected = [table.whiteness[k], table.whiteness_bound[k]]
+        np.testing.assert_allclose(whiteness, expected, atol=1e-3)
+        assert row["identity_time_s"] is None
+    assert name in {row["name"] for row in rows.values()}
+    modes = session.status()["modes"]
+    assert list(modes) == ["cruising", "steady", "restless", "turning"]
+    assert all(one["lower"] < 2.0 < one["upper"] for one in modes.values())
+
+
 def test_a_session_fed_twice_gives_the_same_lines():
     def lines():
         session = joyride_session()
@@ -661,6 +696,14 @@ def test_spokes_are_sweeps(azimuth):
     for cut in range(len(message)):
         session.feed(5.0, "spokes", message[:cut])
     assert set(session.status()["inputs"]["spokes"]["problems"]) == {"spokes"}
+
+
+def test_the_status_says_how_far_the_clock_of_a_radar_server_is_off():
+    url = "signalk://127.0.0.1:3000/radars/one?name=spokes"
+    session = wl.live.Session({"input": [{"url": url}]})
+    session.feed(604.0, "spokes", b'{"spokesPerRevolution": 2048}')
+    session.feed(605.0, "spokes", spoke(1, 1025, 3000, bytes(16)))  # of 5 s
+    assert session.status()["radars"]["A"]["clock_offset_s"] == pytest.approx(600.0)
 
 
 def test_messages_of_redundant_groups_count_once():

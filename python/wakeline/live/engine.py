@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +17,7 @@ from wakeline.tracking.settings import Settings
 
 _SILENT_TURNS = 2.5  # a sector that is a little late still comes before the miss
 _SCANS = 2.5  # as large as a scan may be, of which the window has room for the plots
+_MOST_WATCHED = 2000  # plots whose NIS is kept
 _WINDOW_S = 10.0  # of late data, at least: what clocks of sensors may be off, both ways
 
 
@@ -105,6 +107,8 @@ class TrackEngine:
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0
         self._known = np.zeros(0, dtype=np.int64), np.zeros((0, 4))
+        self._watched: deque[tuple[np.ndarray, np.ndarray]] = deque()
+        self._watched_plots = 0
 
     @property
     def time_s(self) -> float:
@@ -194,51 +198,53 @@ class TrackEngine:
 
     def tracks(self, time_s: float | None = None) -> list[LiveTrack]:
         """All shown tracks, at a time or at that of the last sector."""
-        return list(self._rows(self._tracker.tracks(time_s=time_s, correct=False)))
+        return list(_rows(self.table(time_s)))
 
     def __len__(self) -> int:
         return len(self.table())
 
-    def table(self) -> wl.track.TrackTable:
-        """The shown tracks as columns, at the time of the last sector."""
-        return self._tracker.tracks(correct=False)
+    def table(self, time_s: float | None = None) -> wl.track.TrackTable:
+        """The same as columns."""
+        return self._tracker.tracks(time_s=time_s, correct=False)
 
-    def updated(self) -> tuple[list[LiveTrack], list[int]]:
-        """Tracks that were updated or corrected since the last call, and numbers that are gone."""
+    def updated(self) -> tuple[wl.track.TrackTable, np.ndarray, list[int]]:
+        """The shown tracks, rows updated or corrected since the last call, and numbers gone."""
         table = self.table()
         ids = np.array(table.track_id)
-        update = np.column_stack([table.hits, table.misses, table.nis, table.existence])
+        update = np.column_stack([table.nis, table.hits, table.misses, table.existence])
         known_ids, known = self._known
-        rows = np.arange(len(ids))
+        same = np.zeros(update.shape, dtype=bool)
         if len(known_ids):
             place = np.searchsorted(known_ids, ids).clip(max=len(known_ids) - 1)
-            same = ((known[place] == update) | np.isnan(update)).all(axis=1)
-            rows = rows[~(same & (known_ids[place] == ids))]
+            same = (known[place] == update) | np.isnan(update)
+            same &= (known_ids[place] == ids)[:, np.newaxis]
+        rows = np.flatnonzero(~same.all(axis=1))
+        plotted = np.flatnonzero(~same[:, 0] & np.isfinite(table.nis))
+        self._watch_modes(table.nis[plotted], table.mode_probability[plotted])
         order = np.argsort(ids)
         self._known = ids[order], update[order]
-        return list(self._rows(table, rows)), known_ids[~np.isin(known_ids, ids)].tolist()
+        return table, rows, known_ids[~np.isin(known_ids, ids)].tolist()
 
-    def _rows(
-        self, table: wl.track.TrackTable, rows: np.ndarray | None = None
-    ) -> Iterator[LiveTrack]:
-        """Tracks of a table, or of some of its rows."""
-        which = np.arange(len(table)) if rows is None else rows
-        status, name = table.status, table.name
-        columns = zip(
-            table.track_id[which].tolist(),
-            [status[k] for k in which.tolist()],
-            [name[k] for k in which.tolist()],
-            table.time_s[which].tolist(),
-            table.mean[which].tolist(),
-            table.covariance[which].tolist(),
-            table.mode_probability[which].tolist(),
-            table.existence[which].tolist(),
-            table.hits[which].tolist(),
-            table.misses[which].tolist(),
-            *_identities(table, which),
-            strict=True,
-        )
-        yield from (LiveTrack(*values) for values in columns)
+    def _watch_modes(self, nis: np.ndarray, mode_probability: np.ndarray) -> None:
+        """Keep the NIS of the latest plots with the modes of their tracks."""
+        if len(nis):
+            self._watched.append((nis, mode_probability))
+            self._watched_plots += len(nis)
+        while self._watched_plots > _MOST_WATCHED:
+            self._watched_plots -= len(self._watched.popleft()[0])
+
+    def modes(self) -> dict[str, dict[str, float]]:
+        """Mean NIS of the latest plots while each mode was probable, with its bounds, by name."""
+        if not self._watched:
+            return {}
+        nis, probability = map(np.concatenate, zip(*self._watched, strict=True))
+        found = wl.metrics.nis_by_mode(nis, probability)
+        names = MODE_NAMES if len(found.mean) == len(MODE_NAMES) else range(len(found.mean))
+        rows = zip(found.mean.tolist(), found.lower.tolist(), found.upper.tolist(), strict=True)
+        return {
+            str(name): dict(zip(("mean_nis", "lower", "upper"), row, strict=True))
+            for name, row in zip(names, rows, strict=True)
+        }
 
     def designate(self, time_s: float, north_m: float, east_m: float, std_m: float = 50.0) -> int:
         """Confirm the track at a position, or start one; its number, 0 without room."""
@@ -271,14 +277,24 @@ class TrackEngine:
         return _events(self._tracker.report(**report).events)
 
 
-def _identities(table: wl.track.TrackTable, which: np.ndarray) -> list[list[Any]]:
-    """Columns of identity, its probability and the time of its last report."""
-    names = table.identity
-    return [
-        [names[k] for k in which.tolist()],
-        table.identity_probability[which].tolist(),
-        table.identity_time_s[which].tolist(),
-    ]
+def _rows(table: wl.track.TrackTable) -> Iterator[LiveTrack]:
+    columns = zip(
+        table.track_id.tolist(),
+        table.status,
+        table.name,
+        table.time_s.tolist(),
+        table.mean.tolist(),
+        table.covariance.tolist(),
+        table.mode_probability.tolist(),
+        table.existence.tolist(),
+        table.hits.tolist(),
+        table.misses.tolist(),
+        table.identity,
+        table.identity_probability.tolist(),
+        table.identity_time_s.tolist(),
+        strict=True,
+    )
+    yield from (LiveTrack(*values) for values in columns)
 
 
 def _events(events: Sequence[wl.Event]) -> list[dict[str, Any]]:

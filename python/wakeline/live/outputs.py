@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from wakeline import wire
 
 from .config import OutputConfig
-from .engine import LiveTrack
-from .json_lines import track_line, write_line
+from .json_lines import write_line
 
 if TYPE_CHECKING:
     from .session import Session
@@ -40,8 +39,8 @@ class Output:
         self.messages = self.octets = self.dropped = 0
         self.connection = ""
 
-    def tracks(self, session: Session, radar: str, updated: Sequence[LiveTrack]) -> None:
-        """Send the tracks that a sector has updated."""
+    def tracks(self, session: Session, lines: Callable[[], Sequence[bytes]]) -> None:
+        """Send the tracks that sectors have updated, which `lines` gives as JSON."""
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
         """Send an event."""
@@ -73,9 +72,9 @@ class Output:
 class JsonOutput(Output):
     """JSON lines of track updates and events."""
 
-    def tracks(self, session: Session, radar: str, updated: Sequence[LiveTrack]) -> None:
-        for values in session.describe(updated):
-            self._send(track_line(values, radar))
+    def tracks(self, session: Session, lines: Callable[[], Sequence[bytes]]) -> None:
+        for line in lines():
+            self._send(line)
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
         self._send(write_line(event.get("type", "event"), event))
@@ -91,7 +90,7 @@ class WireOutput(Output, abc.ABC):
         super().__init__(config)
         self._feed: Any = None
 
-    def tracks(self, session: Session, radar: str, updated: Sequence[LiveTrack]) -> None:
+    def tracks(self, session: Session, lines: Callable[[], Sequence[bytes]]) -> None:
         if session.plane is None:
             return
         if self._feed is None:

@@ -8,7 +8,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -16,11 +16,12 @@ import numpy as np
 
 import wakeline as wl
 from wakeline.measurement import OwnShip
+from wakeline.tracking import MODE_NAMES
 
 from . import json_lines
 from .ais import AisPicture, AisVessel
 from .config import LiveConfig, OutputConfig, RadarConfig, config_of, read_config
-from .engine import LiveTrack, TrackEngine
+from .engine import TrackEngine
 from .metrics import metrics_of
 from .outputs import Output, make_output
 from .own_ship import Missing, OwnShipSources, Pose, SourceKey
@@ -502,19 +503,19 @@ class Session:
         """Report the tracks that sectors have updated."""
         self._published_s = self.time_s
         radar, self._unpublished = self._unpublished, ""
-        updated, gone = self.tracker.updated()
-        self.shown.take(updated)
+        table, rows, gone = self.tracker.updated()
+        self.shown.take(table, rows)
         self.shown.drop(gone)
-        for track in updated:
-            self._remember(track)
+        self._remember(table, rows)
         for track_id in gone:
             self._history.pop(track_id, None)
-        if updated or gone:
+        if len(rows) or gone:
+            lines = cache(partial(self.lines, table, rows, radar))
             for output in self.outputs.values():
-                output.tracks(self, radar, updated)
+                output.tracks(self, lines)
             if self.listeners:
-                for values in self.describe(updated):
-                    self._tell("track", values | {"radar": radar})
+                for line in lines():
+                    self._tell("track", json_lines.track_values(line))
         least_s, each_s = _WATCH_S
         since_s = self.tracker.time_s - self._watched_s
         if since_s >= max(least_s, each_s * len(self.shown)):
@@ -528,10 +529,13 @@ class Session:
             for event in events:
                 self._event(event)
 
-    def _remember(self, track: LiveTrack) -> None:
-        past = self._history.setdefault(track.track_id, deque(maxlen=_HISTORY))
-        if not past or track.time_s - past[-1][0] >= _HISTORY_S:
-            past.append((track.time_s, track.north_m, track.east_m))
+    def _remember(self, table: wl.track.TrackTable, rows: np.ndarray) -> None:
+        """Keep the positions of tracks, as far apart in time as they are shown."""
+        columns = (one[rows].tolist() for one in (table.track_id, table.time_s, table.mean))
+        for track_id, time_s, (north_m, _, east_m, _) in zip(*columns, strict=True):
+            past = self._history.setdefault(track_id, deque(maxlen=_HISTORY))
+            if not past or time_s - past[-1][0] >= _HISTORY_S:
+                past.append((time_s, north_m, east_m))
 
     def _tracker_events(self, events: Sequence[dict[str, Any]]) -> None:
         for event in events:
@@ -568,80 +572,41 @@ class Session:
         self.outputs[config.name] = make_output(config)
         return self.outputs[config.name]
 
-    def describe(self, tracks: Sequence[LiveTrack]) -> list[dict[str, Any]]:
-        """Tracks as in the picture and in JSON lines."""
-        if not tracks:
+    def lines(
+        self,
+        table: wl.track.TrackTable,
+        rows: np.ndarray | None = None,
+        radar: str | None = None,
+    ) -> list[bytes]:
+        """Tracks of a table, or of some of its rows, as JSON lines."""
+        which = slice(None) if rows is None else rows
+        mean, covariance = table.mean[which], table.covariance[which]
+        if not len(mean):
             return []
-        mean = np.array([track.mean for track in tracks])
-        places = self._degrees_of(mean[:, [0, 2]])
-        own = self.own.at(tracks[0].time_s)
-        relative = [{}] * len(tracks)
+        own = self.own.at(float(table.time_s[which][0]))
+        columns: dict[str, np.ndarray] = {}
+        if self.plane is not None:
+            columns["place_deg"] = np.degrees(self.plane.place(mean[:, [0, 2]])).T
         if isinstance(own, Pose):
-            relative = self._relative(own, tracks, mean)
-        return [
-            {
-                "track_id": track.track_id,
-                "status": track.status,
-                "name": track.name,
-                "time_s": track.time_s,
-                "north_m": track.north_m,
-                "east_m": track.east_m,
-                "vnorth_mps": track.mean[1],
-                "veast_mps": track.mean[3],
-                "covariance": track.covariance,
-                "course_rad": track.course_rad,
-                "speed_mps": track.speed_mps,
-                "mode": track.mode,
-                "mode_probability": track.mode_probability,
-                "existence": track.existence,
-                "hits": track.hits,
-                "misses": track.misses,
-                "identity": track.identity,
-                "identity_probability": track.identity_probability,
-                "identity_time_s": track.identity_time_s if track.identity else None,
-            }
-            | place
-            | more
-            for track, place, more in zip(tracks, places, relative, strict=True)
-        ]
-
-    def _degrees_of(self, position_m: np.ndarray) -> list[dict[str, float]]:
-        if self.plane is None:
-            return [{}] * len(position_m)
-        latitude, longitude = (np.degrees(each).tolist() for each in self.plane.place(position_m))
-        return [
-            {"latitude_deg": one, "longitude_deg": other}
-            for one, other in zip(latitude, longitude, strict=True)
-        ]
+            columns |= self._relative(own, mean, covariance)
+        return table.json_lines(rows, radar=radar, modes=MODE_NAMES, **columns)
 
     def _relative(
-        self, own: Pose, tracks: Sequence[LiveTrack], mean: np.ndarray
-    ) -> list[dict[str, Any]]:
-        """Range, bearing and closest approach to own ship."""
+        self, own: Pose, mean: np.ndarray, covariance: np.ndarray
+    ) -> dict[str, np.ndarray]:
+        """Range, bearing and closest approach to own ship, of states (k, 4)."""
         north_m, east_m = mean[:, 0] - own.north_m, mean[:, 2] - own.east_m
-        rows = [
-            {"range_m": r, "bearing_rad": b}
-            for r, b in zip(
-                np.hypot(north_m, east_m).tolist(),
-                (np.arctan2(east_m, north_m) % (2.0 * np.pi)).tolist(),
-                strict=True,
-            )
-        ]
+        bearing_rad = np.arctan2(east_m, north_m) % (2.0 * np.pi)
+        columns = {"direction": np.column_stack([np.hypot(north_m, east_m), bearing_rad])}
         if not math.isfinite(own.vnorth_mps):
-            return rows
+            return columns
         state = np.array([own.north_m, own.vnorth_mps, own.east_m, own.veast_mps])
-        covariance = np.diag([0.0, own.velocity_std_mps**2] * 2)
-        approach = wl.navigation.closest_approach(
-            state, mean, covariance, np.array([track.covariance for track in tracks])
-        )
+        own_covariance = np.diag([0.0, own.velocity_std_mps**2] * 2)
+        approach = wl.navigation.closest_approach(state, mean, own_covariance, covariance)
         limits = self.config.settings.danger_limits
         probability = approach.probability(limits.cpa_limit_m, limits.tcpa_limit_s)
-        columns = (approach.cpa_m, approach.tcpa_s, probability)
-        for row, cpa_m, tcpa_s, share in zip(
-            rows, *(np.atleast_1d(one).tolist() for one in columns), strict=True
-        ):
-            row["cpa"] = {"cpa_m": cpa_m, "tcpa_s": tcpa_s, "probability": share}
-        return rows
+        columns["approach"] = np.column_stack([approach.cpa_m, approach.tcpa_s, probability])
+        return columns
 
     def picture(self) -> dict[str, Any]:
         """All that a screen shows, ready for JSON: SI units, radians, positions also in degrees.
@@ -650,7 +615,8 @@ class Session:
         ``ais``, ``alarms``, ``zones`` and ``status``.
         """
         time_s = self.time_s if math.isfinite(self.time_s) else 0.0
-        tracks = self.describe(self.tracker.tracks(self._shown_s(time_s)))
+        lines = self.lines(self.tracker.table(self._shown_s(time_s)))
+        tracks = [json_lines.track_values(line) for line in lines]
         track_of = {one["identity"]: one["track_id"] for one in tracks}
         picture = {
             "version": json_lines.VERSION,
@@ -658,7 +624,6 @@ class Session:
             "origin_deg": self.origin_deg,
             "own": self._own_picture(time_s),
             "radars": [self._radar_picture(name, time_s) for name in self.radars],
-            "tracks": tracks,
             "ais": [
                 self._vessel_picture(vessel, time_s) | {"track_id": track_of.get(str(vessel.mmsi))}
                 for vessel in self.ais.vessels.values()
@@ -669,10 +634,9 @@ class Session:
         }
         for watcher in self.watchers:
             picture |= watcher.picture(self)
-        picture = json_lines.finite_only(picture)
-        for values in picture["tracks"]:  # of finite numbers, and many
+        for values in tracks:
             values["history"] = list(self._history.get(values["track_id"], ()))
-        return picture
+        return json_lines.finite_only(picture) | {"tracks": tracks}
 
     def _shown_s(self, time_s: float) -> float | None:
         """The time of the tracks in the picture; None before the first sector."""
@@ -736,6 +700,7 @@ class Session:
                 },
                 "own": self.own.status(time_s, lambda n, e: self.to_degrees(n, e)),
                 "tracks": len(self.tracker),
+                "modes": self.tracker.modes(),
                 "ais_vessels": len(self.ais.vessels),
             }
         )
@@ -752,8 +717,8 @@ class Session:
     def _clock_offset_s(self, feed: RadarFeed) -> float:
         """What is added to the times of a radar: of its lines, its messages, or its video."""
         names = [feed.name] + [""] * (feed.name == self.config.radars[0].name)
-        clocks = [feed.clock]
-        for decoders in (self._shared.plots, self._shared.video):
+        clocks, shared = [feed.clock], self._shared
+        for decoders in (shared.plots, shared.video, shared.spokes):
             clocks += [decoders[name].clock for name in names if name in decoders]
         return max((clock.offset_s for clock in clocks), key=abs)
 

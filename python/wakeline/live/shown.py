@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from .engine import LiveTrack
+from wakeline.track import TrackTable
 
 
 class Shown:
@@ -54,18 +54,25 @@ class Shown:
         """(k,)"""
         return self._coasting[: len(self)]
 
-    def take(self, updated: Iterable[LiveTrack]) -> None:
-        """Add tracks, or replace them by their update."""
-        for track in updated:
-            row = self._row.get(track.track_id)
-            if row is None:
-                row = self._row[track.track_id] = len(self)
-                self.names.append(track.name)
-                if row == len(self._ids):
-                    self._grow()
-            self._ids[row], self._time_s[row] = track.track_id, track.time_s
-            self._mean[row], self._covariance[row] = track.mean, track.covariance
-            self._coasting[row], self.names[row] = track.status == "coasting", track.name
+    def take(self, table: TrackTable, rows: np.ndarray) -> None:
+        """Add tracks of a table, or replace them by their update."""
+        at = np.array([self._at(one) for one in table.track_id[rows].tolist()], dtype=np.int64)
+        status, name = table.status, table.name
+        self._ids[at], self._time_s[at] = table.track_id[rows], table.time_s[rows]
+        self._mean[at], self._covariance[at] = table.mean[rows], table.covariance[rows]
+        self._coasting[at] = [status[row] == "coasting" for row in rows.tolist()]
+        for place, row in zip(at.tolist(), rows.tolist(), strict=True):
+            self.names[place] = name[row]
+
+    def _at(self, track_id: int) -> int:
+        """The row of a track, which is made where it has none."""
+        row = self._row.get(track_id)
+        if row is None:
+            row = self._row[track_id] = len(self)
+            self.names.append("")
+            if row == len(self._ids):
+                self._grow()
+        return row
 
     def drop(self, track_ids: Iterable[int]) -> None:
         """Remove tracks; the last one takes the row of each."""
