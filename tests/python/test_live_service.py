@@ -1,5 +1,6 @@
 """A live session on the loopback: sockets, session files, replay, restart."""
 
+import asyncio
 import json
 import math
 import os
@@ -12,8 +13,10 @@ import threading
 import time
 
 import pytest
+from aiohttp import web
 
 import wakeline as wl
+from harbor import RANGE_M, Harbor
 from test_live import written
 from wakeline.cli import main
 from wakeline.live.config import (
@@ -26,6 +29,7 @@ from wakeline.live.config import (
 from wakeline.live.network import NetworkInput, NetworkOutput, _Clock
 from wakeline.live.record import Recorder, at_microsecond, read_session, segments_of
 from wakeline.live.service import Service, feed_record, replay
+from wakeline.live.web import WebServer
 from wakeline.recording import RecordingError
 
 SMALL = {
@@ -104,6 +108,92 @@ def test_a_tcp_client_connects_again(taken):
             peer.close()
         one.close()
     assert one.restarts >= 1
+
+
+class SignalkServer:
+    """Sends a delta to each client that has subscribed, and closes the stream."""
+
+    DELTA = '{"context":"vessels.self","updates":[]}'
+
+    def __enter__(self):
+        self.port, self._loop = free_port(), asyncio.new_event_loop()
+        self.asked, ready = [], threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(ready,))
+        self._thread.start()
+        assert ready.wait(5.0)
+        return self
+
+    def __exit__(self, *_):
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+
+    def _run(self, ready):
+        app = web.Application()
+        app.add_routes([web.get("/signalk/v1/stream", self._stream)])
+        runner = web.AppRunner(app)
+        self._loop.run_until_complete(runner.setup())
+        self._loop.run_until_complete(web.TCPSite(runner, "127.0.0.1", self.port).start())
+        ready.set()
+        self._loop.run_forever()
+        self._loop.run_until_complete(runner.cleanup())
+        self._loop.close()
+
+    async def _stream(self, request):
+        stream = web.WebSocketResponse()
+        await stream.prepare(request)
+        self.asked.append(await stream.receive_json())
+        await stream.send_str(self.DELTA)
+        await stream.close()
+        return stream
+
+
+def test_a_signal_k_server_is_subscribed_to_and_connected_again(taken):
+    with SignalkServer() as server:
+        one = opened(f"signalk://127.0.0.1:{server.port}", taken)
+        until(lambda: len(taken) >= 2)
+        one.close()
+        one.join()
+    assert {octets for _, octets in taken} == {SignalkServer.DELTA.encode()}
+    assert all(wanted["subscribe"] for wanted in server.asked)
+    assert one.restarts >= 1
+
+
+def test_spokes_of_a_radar_server_are_the_sweeps_that_it_shows():
+    """The server is ours: its capabilities come first, its spokes are those of its sweeps."""
+    harbor, seen = Harbor(), []
+    with WebServer(harbor, port=0) as server:
+        url = f"signalk://127.0.0.1:{server.app.port}/radars/A?name=spokes"
+        session = wl.live.Session({"input": [{"url": url}]})
+        session.sweeps.append(lambda *sweeps: seen.append(sweeps))
+        service = Service(session)
+        thread = threading.Thread(target=service.run)
+        thread.start()
+        end_s = time.monotonic() + 10.0
+        while len(seen) < 2 and time.monotonic() < end_s:
+            harbor.sweep()
+            time.sleep(0.1)
+        service.stop()
+        thread.join()
+    assert session.status()["inputs"]["spokes"]["problems"] == {}
+    assert {(radar, range_m) for radar, _, _, range_m, _ in seen} == {("A", RANGE_M)}
+    assert max(cells.max() for *_, cells in seen) > 0
+
+
+def test_standard_input_is_read_to_its_end(tmp_path):
+    radar = '[[radar]]\nname = "A"\nposition_deg = [54, 10]\nperiod_s = 0.2\n'
+    (tmp_path / "live.toml").write_text(radar)
+    command = [sys.executable, "-m", "wakeline", "live", "live.toml", "--in", "stdin:"]
+    begin_s = time.time()
+    lines = b"".join(turn(k, begin_s, 0.2)[1] for k in range(12))
+    done = subprocess.run(
+        [*command, "--out", "file:tracks.jsonl", "--quiet"],
+        input=lines,
+        cwd=tmp_path,
+        timeout=60.0,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert '"type":"track"' in read_tracks(tmp_path)
 
 
 def test_a_tcp_server_tells_its_clients_apart(taken):

@@ -308,9 +308,9 @@ class NetworkInput(_Thread):
     def _signalk(self) -> bool:
         self.connection = "connecting"
 
-        def take(time_s: float, octets: bytes) -> None:
+        def take(octets: bytes) -> None:
             self.connection = "connected"
-            self._take(self.config.name, [(time_s, octets)])
+            self._take(self.config.name, [(now_s(), octets)])
 
         try:
             host, port = self._url.hostname or "127.0.0.1", self._url.port or 3000
@@ -498,7 +498,7 @@ def _naming(url: str) -> Iterator[None]:
 
 
 def _write_stdout(octets: bytes) -> None:
-    sys.stdout.write(octets.decode("ascii", "replace"))
+    sys.stdout.write(octets.decode("utf-8", "replace"))
     sys.stdout.flush()
 
 

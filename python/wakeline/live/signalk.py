@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -130,7 +129,7 @@ def _number(value: Any) -> float | None:
 
 
 def receive(
-    host: str, port: int, radar: str, take: Callable[[float, bytes], None], ends: Callable[[], bool]
+    host: str, port: int, radar: str, take: Callable[[bytes], None], ends: Callable[[], bool]
 ) -> bool:
     """Receive the deltas of a server, or the spokes of a radar if one is named.
 
@@ -159,7 +158,7 @@ def receive(
             if radar:
                 async with client.get(f"{radar_url}/capabilities") as answer:
                     answer.raise_for_status()
-                    take(time.time(), json.dumps(await answer.json()).encode())
+                    take(json.dumps(await answer.json()).encode())
             async with client.ws_connect(
                 stream_url, heartbeat=20.0, max_msg_size=_LONGEST
             ) as stream:
@@ -171,9 +170,9 @@ def receive(
                     except asyncio.TimeoutError:
                         continue
                     if message.type == aiohttp.WSMsgType.TEXT:
-                        take(time.time(), message.data.encode())
+                        take(message.data.encode())
                     elif message.type == aiohttp.WSMsgType.BINARY:
-                        take(time.time(), message.data)
+                        take(message.data)
                     else:
                         return False
                 return True

@@ -48,10 +48,12 @@ class SpokeFeed:
     Attributes
     ----------
     video : VideoFeed
+    clock : SensorClock
     """
 
     def __init__(self, from_bow: bool) -> None:
         self.video = VideoFeed()
+        self.clock = self.video.clock
         self._from_bow = from_bow
         self._per_turn = 0
         self._scale = 1
@@ -102,8 +104,7 @@ class SpokeFeed:
         amplitude = np.frombuffer(b"".join(one.pixels for one in spokes), np.uint8)
         scaled = np.minimum(amplitude.astype(np.uint16) * self._scale, 255).astype(np.uint8)
         times = [
-            self.video.clock(1e-3 * one.time_ms, time_s) if one.time_ms else time_s
-            for one in spokes
+            self.clock(1e-3 * one.time_ms, time_s) if one.time_ms else time_s for one in spokes
         ]
         number = np.array([one.number % self._per_turn for one in spokes])
         return Sweeps(
