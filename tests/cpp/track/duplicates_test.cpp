@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
+
+#include "support/draw.hpp"
 
 namespace wakeline::duplicates_test {
 namespace {
@@ -100,6 +103,45 @@ TEST(Duplicates, TwoTracksAreComparedAtOneTime) {
   here.time_s = 3600.0;
   here.kinematics.mean[0] = 72000.0;
   EXPECT_TRUE(found(duplicates, tracks).empty()) << "too far apart in time to be compared";
+}
+
+// Tracks of sizes and times that differ, in a crowd: those of some slots as by comparing all.
+TEST(Duplicates, AreThoseOfAllPairs) {
+  const TrackerConfig config{.duplicate_distance = 2.0, .vessel_length_m = 12.0};
+  test::Draw draw(5);
+  for (int run = 0; run < 50; ++run) {
+    TrackList tracks(100);
+    Duplicates duplicates(config, kThreshold);
+    std::vector<int> slots;
+    for (int k = 1; k <= 100; ++k) {
+      Track& track = open(tracks, -k, {});
+      const auto axis = [&] { return draw.uniform(-400.0, 400.0); };
+      track.kinematics.mean << axis(), draw.uniform(-20.0, 20.0), axis(), draw.uniform(-20.0, 20.0);
+      track.kinematics.covariance *= draw.uniform(0.0, 1.0) < 0.1 ? 100.0 : 1.0;
+      track.time_s = draw.uniform(0.0, 3.0 * kPeriod_s);
+      track.existence = draw.uniform(0.1, 0.9);
+      if (k % 3 == run % 3) slots.push_back(track.slot);
+    }
+    std::vector<int> expected;
+    for (const int slot : slots) {
+      const Track& track = tracks.at(slot);
+      for (const int senior : tracks.slots()) {
+        const Track& other = tracks.at(senior);
+        const double dt_s = track.time_s - other.time_s;
+        if (!is_senior(other, track) || std::abs(dt_s) > 2.0 * kPeriod_s ||
+            std::ranges::count(expected, senior) > 0)
+          continue;
+        const Gaussian<4> then = at_constant_velocity(other.kinematics, dt_s);
+        if (!same_target(then, track.kinematics, config.duplicate_distance) &&
+            !same_vessel(other, then, track, config.vessel_length_m, kThreshold))
+          continue;
+        expected.push_back(slot);
+        break;
+      }
+    }
+    const std::span<const int> found = duplicates.find(tracks, slots, kPeriod_s);
+    EXPECT_EQ(std::vector<int>(found.begin(), found.end()), expected);
+  }
 }
 
 TEST(Seniority, IsAStrictOrder) {

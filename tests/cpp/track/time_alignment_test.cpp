@@ -26,6 +26,19 @@ TEST(TimeAlignment, MovesAPlotWithTheVelocityOfTheTrack) {
   EXPECT_EQ(alignment.longest_way_m(2.0), 20.0);
 }
 
+TEST(TimeAlignment, ThePositionAtConstantVelocityIsThatOfTheWholeBelief) {
+  Track track = moving_track();
+  track.kinematics.covariance +=
+      Vec<double, 4>(3.0, -1.0, 2.0, 0.5) * Vec<double, 4>(3.0, -1.0, 2.0, 0.5).transpose();
+  for (const double dt_s : {-2.5, 0.0, 3.0}) {
+    const Gaussian<2> position = position_at_constant_velocity(track.kinematics, dt_s);
+    const Gaussian<2> of_all = position_in(at_constant_velocity(track.kinematics, dt_s));
+    EXPECT_TRUE(matrices_near(position.mean, of_all.mean, {.absolute = 0, .relative = 1e-14}));
+    EXPECT_TRUE(
+        matrices_near(position.covariance, of_all.covariance, {.absolute = 0, .relative = 1e-14}));
+  }
+}
+
 TEST(TimeAlignment, AddsTheErrorOfTheVelocityAndOfManeuversBeyondAPeriod) {
   const TimeAlignment alignment(moving_track(), 2.5, 0.5);
   EXPECT_EQ(alignment.added_m2(0.0), (Mat<double, 2, 2>::Zero()));

@@ -21,7 +21,9 @@ TEST(TrackList, KeepsOlderTracksFirstAndEachInItsSlot) {
   for (const int slot : tracks.slots()) ids.push_back(tracks.at(slot).id);
   EXPECT_EQ(ids, (std::vector<std::int64_t>{1, 3, 4, 5}));
   EXPECT_EQ(tracks.find(3)->slot, slot_of_3);
-  tracks.remove_if([](const Track& track) { return track.id % 2 == 1; });
+  for (const int slot : tracks.slots())
+    if (tracks.at(slot).id % 2 == 1) tracks.vacate(slot);
+  tracks.close_gaps();
   EXPECT_EQ(tracks.size(), 1);
   EXPECT_FALSE(tracks.in_use(slot_of_3));
   EXPECT_TRUE(tracks.in_use(tracks.find(4)->slot));

@@ -109,33 +109,47 @@ class Beam {
   double swept_from_rad_ = 0.0;
 };
 
-/// The angles at which plots of a target may come, as seen from own ship: those of the gate about
-/// its predicted position, where the covariance of plots is larger by `plot_factor` than that of
-/// usual ones, in the turn after `passed_rad`.
-///
-/// A gate that reaches the antenna has the whole turn about its centre.
-inline BeamArc gate_arc(const Track& track, double passed_rad, double time_s, double threshold,
-                        double plot_factor, const Radar& radar, const OwnShip& own) noexcept {
-  const double dt_s = time_s - track.time_s;
-  const Vec<double, 2> d = track.position() + dt_s * track.velocity() - own.position<double>();
-  const double range_m = d.norm();
-  const double near_rad = passed_rad + Beam::kTurn;
-  const double centre_rad =
-      Beam::unwrapped(std::atan2(d[1], d[0]) + radar.bearing_offset_rad, near_rad);
-  const Gaussian<4> now = at_constant_velocity(track.kinematics, dt_s);
-  const PolarErrors errors{radar.range_std_m, radar.bearing_std_rad, radar.extent_std_m, 0.0, own};
-  const double isotropic_m2 = errors.isotropic_variance_m2();
-  const auto half_m = [&](const Vec<double, 2>& u, double plot_m2) {
-    const double track_m2 = now.covariance(0, 0) * u[0] * u[0] +
-                            2.0 * now.covariance(0, 2) * u[0] * u[1] +
-                            now.covariance(2, 2) * u[1] * u[1];
-    return std::sqrt(threshold * (track_m2 + plot_factor * (plot_m2 + isotropic_m2)));
-  };
-  const Vec<double, 2> u = range_m > 0.0 ? Vec<double, 2>(d / range_m) : Vec<double, 2>(1.0, 0.0);
-  const double along_m = half_m(u, errors.range_variance_m2());
-  const double across_m = half_m({-u[1], u[0]}, range_m * range_m * errors.bearing_variance_rad2());
-  const double half_rad = along_m < range_m ? std::atan2(across_m, range_m - along_m) : kPi<double>;
-  return {centre_rad - half_rad, centre_rad, centre_rad + half_rad};
-}
+/// A gate about a predicted position as seen from own ship: the angles at which plots of the target
+/// may come in the turn after the beam passed `passed_rad`.
+class GateSight {
+ public:
+  GateSight(const Gaussian<2>& predicted, double passed_rad, double threshold, const Radar& radar,
+            const OwnShip& own) noexcept
+      : predicted_m2_(predicted.covariance),
+        threshold_(threshold),
+        errors_{radar.range_std_m, radar.bearing_std_rad, radar.extent_std_m, 0.0, own} {
+    const Vec<double, 2> d = predicted.mean - own.position<double>();
+    range_m_ = d.norm();
+    centre_rad_ = Beam::unwrapped(std::atan2(d[1], d[0]) + radar.bearing_offset_rad,
+                                  passed_rad + Beam::kTurn);
+    if (range_m_ > 0.0) along_ = d / range_m_;
+  }
+
+  /// The arc where the covariance of plots is larger by `plot_factor` than that of usual ones. A
+  /// gate that reaches the antenna has the whole turn about its centre.
+  [[nodiscard]] BeamArc arc(double plot_factor) const noexcept {
+    const double isotropic_m2 = errors_.isotropic_variance_m2();
+    const auto half_m = [&](const Vec<double, 2>& u, double plot_m2) {
+      const double track_m2 = predicted_m2_(0, 0) * u[0] * u[0] +
+                              2.0 * predicted_m2_(0, 1) * u[0] * u[1] +
+                              predicted_m2_(1, 1) * u[1] * u[1];
+      return std::sqrt(threshold_ * (track_m2 + plot_factor * (plot_m2 + isotropic_m2)));
+    };
+    const double along_m = half_m(along_, errors_.range_variance_m2());
+    const double across_m =
+        half_m({-along_[1], along_[0]}, range_m_ * range_m_ * errors_.bearing_variance_rad2());
+    const double half_rad =
+        along_m < range_m_ ? std::atan2(across_m, range_m_ - along_m) : kPi<double>;
+    return {centre_rad_ - half_rad, centre_rad_, centre_rad_ + half_rad};
+  }
+
+ private:
+  Mat<double, 2, 2> predicted_m2_;
+  double threshold_;
+  PolarErrors errors_;
+  double range_m_;
+  double centre_rad_;
+  Vec<double, 2> along_{1.0, 0.0};
+};
 
 }  // namespace wakeline

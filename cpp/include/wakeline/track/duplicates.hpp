@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -95,40 +96,42 @@ class Duplicates {
   /// Indexes the tracks that may be on the target of one of the slots.
   void index(const TrackList& tracks, std::span<const int> slots) noexcept {
     positions_.clear();
+    way_m_ = 0.0;
     if (slots.empty()) return;
-    double widest = 0.0, fastest_mps = 0.0;
-    double begin_s = tracks.at(slots.front()).time_s, end_s = begin_s;
+    constexpr double kNowhere = std::numeric_limits<double>::infinity();
+    Vec<double, 2> south_west = Vec<double, 2>::Constant(kNowhere), north_east = -south_west;
+    double begin_s = kNowhere, end_s = -kNowhere, widest = 0.0;
+    for (const int slot : slots) {
+      const Track& track = tracks.at(slot);
+      south_west = south_west.cwiseMin(track.position());
+      north_east = north_east.cwiseMax(track.position());
+      begin_s = std::min(begin_s, track.time_s);
+      end_s = std::max(end_s, track.time_s);
+      widest = std::max(widest, widest_m2(track));
+    }
     for (const int slot : tracks.slots()) {
       const Track& track = tracks.at(slot);
       ends_[static_cast<std::size_t>(slot)] = 0;
-      widest = std::max(widest, widest_m2(track));
-      fastest_mps = std::max(fastest_mps, track.velocity().cwiseAbs().maxCoeff());
-      begin_s = std::min(begin_s, track.time_s);
-      end_s = std::max(end_s, track.time_s);
-    }
-    way_m_ = fastest_mps * std::min(end_s - begin_s, longest_s_);
-    Vec<double, 2> south_west = tracks.at(slots.front()).position(), north_east = south_west;
-    for (const int slot : slots) {
-      south_west = south_west.cwiseMin(tracks.at(slot).position());
-      north_east = north_east.cwiseMax(tracks.at(slot).position());
-    }
-    const Vec<double, 2> reach = Vec<double, 2>::Constant(reach_m(2.0 * widest));
-    south_west -= reach;
-    north_east += reach;
-    for (const int slot : tracks.slots()) {
-      const Track& track = tracks.at(slot);
       const Vec<double, 2> position = track.position();
-      if (is_finite(position) && (position.array() >= south_west.array()).all() &&
-          (position.array() <= north_east.array()).all())
-        positions_.add(position, widest_m2(track), slot);
+      const double way_m =
+          track.velocity().cwiseAbs().maxCoeff() *
+          std::min(std::max(end_s - track.time_s, track.time_s - begin_s), longest_s_);
+      const double apart_m =
+          (south_west - position).cwiseMax(position - north_east).maxCoeff() - way_m;
+      const double variance_m2 = widest_m2(track);
+      if (!is_finite(position) ||
+          (apart_m > 0.0 && apart_m * apart_m > reach_m2(widest + variance_m2)))
+        continue;
+      positions_.add(position, variance_m2, slot);
+      way_m_ = std::max(way_m_, way_m);
     }
     positions_.sort();
   }
 
-  /// Tracks whose variances sum to that are not on one target farther apart, each at its own time;
-  /// a little more for rounding.
-  [[nodiscard]] double reach_m(double variance_m2) const noexcept {
-    return 1.001 * std::max(std::sqrt(distance_ * variance_m2), length_m_) + way_m_;
+  /// Tracks of one time whose variances sum to that are not on one target farther apart, squared; a
+  /// little more for rounding.
+  [[nodiscard]] double reach_m2(double variance_m2) const noexcept {
+    return 1.002 * std::max(distance_ * variance_m2, length_m_ * length_m_);
   }
 
   /// Variance of the position along the axis where it is larger.
@@ -138,7 +141,9 @@ class Duplicates {
 
   /// Whether a senior track, which is not to be deleted itself, is on the same target.
   [[nodiscard]] bool has_senior(const TrackList& tracks, const Track& track) const noexcept {
-    const auto reach = [&](double other_m2) { return reach_m(widest_m2(track) + other_m2); };
+    const auto reach = [&](double other_m2) {
+      return std::sqrt(reach_m2(widest_m2(track) + other_m2)) + way_m_;
+    };
     bool found = false;
     positions_.for_each_nearest(track.position(), reach, kMostNear, [&](int slot) {
       const Track& other = tracks.at(slot);
@@ -163,7 +168,7 @@ class Duplicates {
   int scans_;
   double velocity_threshold_;
   PlaceIndex positions_;
-  double way_m_ = 0.0;      ///< of the fastest track between the times of two
+  double way_m_ = 0.0;      ///< of the fastest indexed track between the times of two
   std::vector<char> ends_;  ///< by slot, whether it is among those found
   std::vector<int> found_;
 };

@@ -67,6 +67,8 @@ struct Picture {
   TrackGate gate;
   TrackRoom room;
   double scan_time_s = 0.0;  ///< of the last scan of any radar
+  double looked_since_s = -std::numeric_limits<double>::infinity();
+  ///< a radar has looked at no track longer ago
   bool started = false;
   bool full = false;  ///< since the event that says so
   std::int64_t next_id = 1;
@@ -197,8 +199,9 @@ struct Picture {
       Track& track = tracks.at(slot);
       const double dt_s = time_s - track.time_s;
       if (std::abs(dt_s) > kPointedPeriods * longest_period_s()) continue;
-      const double distance = innovation_squared(at_constant_velocity(track.kinematics, dt_s),
-                                                 position.mean, position.covariance);
+      const double distance =
+          innovation_squared(position_at_constant_velocity(track.kinematics, dt_s), position.mean,
+                             position.covariance);
       if (distance <= least) {
         least = distance;
         nearest = &track;
@@ -234,14 +237,11 @@ struct Picture {
   /// Whether a track has started in this scan: tentative tracks count downwards.
   [[nodiscard]] bool is_new(const Track& track) const noexcept { return track.id < newest_before; }
 
-  /// Numbers the tracks that were confirmed in this scan.
-  void number_confirmed() noexcept {
-    for (const int slot : tracks.slots()) {
-      Track& track = tracks.at(slot);
-      if (!track.confirmed() || track.id > 0) continue;
-      track.id = next_id++;
-      announce(TrackEvent::kConfirmed, track);
-    }
+  /// Numbers a track if it has just been confirmed.
+  void number_confirmed(Track& track) noexcept {
+    if (!track.confirmed() || track.id > 0) return;
+    track.id = next_id++;
+    announce(TrackEvent::kConfirmed, track);
   }
 
   /// Makes a track one that the operator has seen.
@@ -291,6 +291,7 @@ struct Picture {
     at_hand = other.at_hand;
     partial_time_s = other.partial_time_s;
     scan_time_s = other.scan_time_s;
+    looked_since_s = other.looked_since_s;
     started = other.started;
     full = other.full;
     next_id = other.next_id;

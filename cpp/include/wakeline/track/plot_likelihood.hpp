@@ -93,24 +93,25 @@ class CandidatePlots {
   std::size_t count_ = 0;
 };
 
-/// L⁻¹ ν of a plot with covariance `r` (m²) from the position in a belief over `[x, vx, y, vy]`,
-/// with S = L Lᵀ; infinite where S is not positive definite.
-inline Vec<double, 2> whitened_innovation(const Gaussian<4>& kinematics, const Vec<double, 2>& z,
+/// L⁻¹ ν of a plot with covariance `r` (m²) from a predicted position, with S = L Lᵀ; infinite
+/// where S is not positive definite.
+inline Vec<double, 2> whitened_innovation(const Gaussian<2>& predicted, const Vec<double, 2>& z,
                                           const Mat<double, 2, 2>& r) noexcept {
-  Mat<double, 2, 2> s;
-  s << kinematics.covariance(0, 0), kinematics.covariance(0, 2), kinematics.covariance(2, 0),
-      kinematics.covariance(2, 2);
-  s += r;
-  const Cholesky<2> factor(s);
-  const Vec<double, 2> d(z[0] - kinematics.mean[0], z[1] - kinematics.mean[2]);
+  const Cholesky<2> factor(predicted.covariance + r);
   if (!factor.ok()) return Vec<double, 2>::Constant(std::numeric_limits<double>::infinity());
-  return factor.whiten<1>(d);
+  return factor.whiten<1>(z - predicted.mean);
 }
 
 /// Normalised innovation squared: d² of such a plot.
+inline double innovation_squared(const Gaussian<2>& predicted, const Vec<double, 2>& z,
+                                 const Mat<double, 2, 2>& r) noexcept {
+  return whitened_innovation(predicted, z, r).squaredNorm();
+}
+
+/// The same from the position in a belief over `[x, vx, y, vy]`.
 inline double innovation_squared(const Gaussian<4>& kinematics, const Vec<double, 2>& z,
                                  const Mat<double, 2, 2>& r) noexcept {
-  return whitened_innovation(kinematics, z, r).squaredNorm();
+  return innovation_squared(position_in(kinematics), z, r);
 }
 
 }  // namespace wakeline

@@ -218,7 +218,7 @@ class ReportStages {
     track.count(true);
     track.seen_until_s = std::max(track.seen_until_s, identity.time_s + identity.patience_s());
     track.status = TrackStatus::kConfirmed;
-    if (track.id <= 0) picture_.number_confirmed();
+    picture_.number_confirmed(track);
   }
 
   /// Starts a track of a vessel that reports where no radar has seen it.

@@ -41,7 +41,7 @@ class ScanStages {
     const auto plots = static_cast<std::size_t>(picture.config.max_plots);
     for (std::vector<int>* slots : {&due_, &waiting_, &rivals_, &competing_})
       slots->reserve(tracks);
-    touched_.resize(tracks);
+    touched_.reserve(2 * tracks);
     arcs_.reserve(tracks);
     is_candidate_.reserve(plots);
     is_contested_.reserve(plots);
@@ -94,7 +94,7 @@ class ScanStages {
 
     confirm_and_delete();
     delete_duplicates();
-    picture_.number_confirmed();
+    for (const int slot : touched_) picture_.number_confirmed(picture_.tracks.at(slot));
     state().clutter.learn(
         state().plots, state().ownership.clutter_probability(),
         [&](int slot) { return state().ownership.plot_of(slot); }, state().looks, due_);
@@ -164,39 +164,53 @@ class ScanStages {
     waiting_.clear();
     arcs_.clear();
     const double beam_rad = state().beam.angle_rad();
-    for (const int slot : picture_.tracks.slots()) {
-      Track& track = picture_.tracks.at(slot);
-      Look& look = look_at(track);
-      if (whole_turn_) {
-        look.passed_rad = beam_rad - kPi<double>;
-        look.look_rad = beam_rad;
+    if (whole_turn_) {
+      for (const int slot : picture_.tracks.slots()) {
+        const Track& track = picture_.tracks.at(slot);
+        look_at(track).passed_rad = beam_rad - kPi<double>;
+        look_at(track).look_rad = beam_rad;
         if (may_be_seen(track)) due_.push_back(slot);
-        continue;
       }
-      if (beam_rad < look.look_rad) continue;
-      BeamArc arc = arc_of(track, picture_.config.outlier_variance());
-      if (arc.from_rad > beam_rad) continue;
-      if (arc.to_rad > beam_rad) {
-        const BeamArc usual = arc_of(track, 1.0);
-        if (!state().beam.has_swept(usual) || !has_plot_near(track)) {
-          waiting_.push_back(slot);
-          continue;
-        }
-        arc = usual;
-      }
-      if (state().beam.has_swept(arc) && may_be_seen(track)) {
-        due_.push_back(slot);
-        arcs_.push_back(arc);
-      } else {
-        pass(track, arc);  // a part was left out
-      }
+      return;
     }
-    if (!whole_turn_) defer();
+    rival_plot_.resize(static_cast<std::size_t>(state().plots.size()));
+    std::iota(rival_plot_.begin(), rival_plot_.end(), 0);
+    for (const int slot : picture_.tracks.slots())
+      if (beam_rad >= state().looks[static_cast<std::size_t>(slot)].look_rad) look_for(slot);
+    defer();
   }
 
-  [[nodiscard]] BeamArc arc_of(const Track& track, double plot_factor) const noexcept {
-    return gate_arc(track, state().look(track).passed_rad, state().time_s,
-                    picture_.gate.threshold(), plot_factor, state().radar, state().own);
+  /// Lists a track which the beam may have reached, if it is due or waits. One that may wait makes
+  /// the plots near it rivals.
+  void look_for(int slot) noexcept {
+    Track& track = picture_.tracks.at(slot);
+    const double beam_rad = state().beam.angle_rad();
+    const GateSight sight(
+        position_at_constant_velocity(track.kinematics, state().time_s - track.time_s),
+        look_at(track).passed_rad, picture_.gate.threshold(), state().radar, state().own);
+    BeamArc arc = sight.arc(picture_.config.outlier_variance());
+    if (arc.from_rad > beam_rad) return;
+    const bool is_passed = arc.to_rad <= beam_rad;
+    if (!is_passed) arc = sight.arc(1.0);
+    const bool has_swept = state().beam.has_swept(arc);
+    const bool may_wait = has_swept ? beam_rad < longest_wait_rad(arc) : !is_passed;
+    int& near = near_plot_[static_cast<std::size_t>(slot)];
+    near = may_wait ? join_near(track) : kNoPlot;
+    const auto has_near = [&] { return may_wait ? near != kNoPlot : has_plot_near(track); };
+    if (!is_passed && !(has_swept && has_near())) {
+      waiting_.push_back(slot);
+    } else if (has_swept && (is_covered(track) || has_near())) {
+      due_.push_back(slot);
+      arcs_.push_back(arc);
+    } else {
+      pass(track, arc);  // a part was left out
+    }
+  }
+
+  /// Up to which angle of the beam a track may wait for others once the beam has passed its gate:
+  /// half of the time that the beam needs to reach the gate again.
+  [[nodiscard]] static double longest_wait_rad(const BeamArc& arc) noexcept {
+    return arc.to_rad + (Beam::kTurn - (arc.to_rad - arc.from_rad)) / 2;
   }
 
   /// Whether the radar covers the place where a track is now, or has a plot there all the same.
@@ -223,19 +237,10 @@ class ScanStages {
     look.look_rad = next_look_rad(track, arc);
   }
 
-  /// Has tracks wait that compete for a plot with one that waits, so that association is of both;
-  /// for half of the time that the beam needs to reach their gate again.
+  /// Has tracks wait that compete for a plot with one that waits, so that association is of both.
   void defer() noexcept {
     if (!waiting_.empty()) {
-      rival_plot_.resize(static_cast<std::size_t>(state().plots.size()));
-      std::iota(rival_plot_.begin(), rival_plot_.end(), 0);
       is_contested_.assign(rival_plot_.size(), 0);
-      for (const int slot : waiting_) near_plot_[static_cast<std::size_t>(slot)] = join_near(slot);
-      for (std::size_t k = 0; k < due_.size(); ++k) {
-        const double longest_rad = (Beam::kTurn - (arcs_[k].to_rad - arcs_[k].from_rad)) / 2;
-        const bool may_wait = state().beam.angle_rad() < arcs_[k].to_rad + longest_rad;
-        near_plot_[static_cast<std::size_t>(due_[k])] = may_wait ? join_near(due_[k]) : kNoPlot;
-      }
       for (const int slot : waiting_)
         if (const int plot = near_plot_[static_cast<std::size_t>(slot)]; plot != kNoPlot)
           is_contested_[static_cast<std::size_t>(first_rival_of(plot))] = 1;
@@ -256,9 +261,9 @@ class ScanStages {
   }
 
   /// Makes the plots in the gate of a track rivals of each other; one of them, or `kNoPlot`.
-  int join_near(int slot) noexcept {
+  int join_near(const Track& track) noexcept {
     int first = kNoPlot;
-    for_each_near(picture_.tracks.at(slot), [&](int plot) {
+    for_each_near(track, [&](int plot) {
       const int other = first_rival_of(plot);
       if (first == kNoPlot)
         first = other;
@@ -277,14 +282,18 @@ class ScanStages {
   /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
   template <class Function>
   void for_each_near(const Track& track, const Function& function) const noexcept {
-    const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
-    for_each_in_reach(now, [&](int index) {
-      const ScanPlot& plot = state().plots[index];
-      const Gaussian<4> then = at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
-      if (innovation_squared(then, plot.position.mean, plot.position.covariance) <=
-          picture_.gate.threshold())
-        function(index);
+    for_each_in_reach(track, [&](int plot) {
+      if (is_near(track, plot)) function(plot);
     });
+  }
+
+  /// Whether a plot is in the gate of a track without outliers.
+  [[nodiscard]] bool is_near(const Track& track, int index) const noexcept {
+    const ScanPlot& plot = state().plots[index];
+    const Gaussian<2> then =
+        position_at_constant_velocity(track.kinematics, plot.time_s - track.time_s);
+    return innovation_squared(then, plot.position.mean, plot.position.covariance) <=
+           picture_.gate.threshold();
   }
 
   /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
@@ -326,40 +335,51 @@ class ScanStages {
     }
   }
 
-  /// Lets tracks coast by time that the beam has not passed for long; returns none that is due.
+  /// Lets tracks coast by time that the beam has not passed for long.
   void coast_by_time() noexcept {
-    touched_.assign(touched_.size(), 0);
-    for (const int slot : due_) touched_[static_cast<std::size_t>(slot)] = 1;
+    touched_.assign(due_.begin(), due_.end());
     const double period_s = picture_.longest_period_s();
+    if (!(picture_.scan_time_s - picture_.looked_since_s > kSilentPeriods * period_s)) return;
+    picture_.looked_since_s = picture_.scan_time_s;
     for (const int slot : picture_.tracks.slots()) {
-      Track& track = picture_.tracks.at(slot);
-      const double silent_s = picture_.scan_time_s - track.looked_s;
-      if (!(silent_s > kSilentPeriods * period_s) || picture_.is_awaited(track)) continue;
-      const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
-      if (!(picture_.scan_time_s < track.seen_until_s))
-        for (double k = 0.0; k < periods; ++k) track.count(false);
-      track.looked_s += periods * period_s;
-      const ExistencePrediction prediction(picture_.config, periods * period_s);
-      track.existence = prediction.existence(track.existence);
-      for (RadarState& radar : picture_.radars) {
-        Look& look = radar.look(track);
-        look.visibility = prediction.visibility(look.visibility);
-        look.looked_s = std::max(look.looked_s, track.looked_s);
-        look.misses += static_cast<int>(periods);
-      }
-      PredictionStep<Estimator> step{&picture_.estimator_at(slot),
-                                     picture_.scan_time_s - track.time_s};
-      picture_.steps.predict({&step, 1});
-      touched_[static_cast<std::size_t>(slot)] = 1;
-      track.nis = std::numeric_limits<double>::quiet_NaN();
-      if (step.status != Status::kOk) continue;
-      track.time_s = picture_.scan_time_s;
-      track.kinematics = step.kinematics;
+      coast_by_time(picture_.tracks.at(slot), period_s);
+      picture_.looked_since_s =
+          std::min(picture_.looked_since_s, picture_.tracks.at(slot).looked_s);
     }
+    const auto is_older = [&](int a, int b) {
+      return picture_.tracks.at(a).birth > picture_.tracks.at(b).birth;
+    };
+    std::sort(touched_.begin(), touched_.end(), is_older);
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  }
+
+  void coast_by_time(Track& track, double period_s) noexcept {
+    const double silent_s = picture_.scan_time_s - track.looked_s;
+    if (!(silent_s > kSilentPeriods * period_s) || picture_.is_awaited(track)) return;
+    const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
+    if (!(picture_.scan_time_s < track.seen_until_s))
+      for (double k = 0.0; k < periods; ++k) track.count(false);
+    track.looked_s += periods * period_s;
+    const ExistencePrediction prediction(picture_.config, periods * period_s);
+    track.existence = prediction.existence(track.existence);
+    for (RadarState& radar : picture_.radars) {
+      Look& look = radar.look(track);
+      look.visibility = prediction.visibility(look.visibility);
+      look.looked_s = std::max(look.looked_s, track.looked_s);
+      look.misses += static_cast<int>(periods);
+    }
+    PredictionStep<Estimator> step{&picture_.estimator_at(track.slot),
+                                   picture_.scan_time_s - track.time_s};
+    picture_.steps.predict({&step, 1});
+    touched_.push_back(track.slot);
+    track.nis = std::numeric_limits<double>::quiet_NaN();
+    if (step.status != Status::kOk) return;
+    track.time_s = picture_.scan_time_s;
+    track.kinematics = step.kinematics;
   }
 
   /// Has the plots wait that may be of a track which waits, or ahead of the beam, and lists the
-  /// tracks that wait and have a candidate in common with one that is due.
+  /// tracks that wait and have a plot near them that is a candidate of one that is due.
   void list_rivals() noexcept {
     rivals_.clear();
     if (!waiting_.empty()) {
@@ -370,11 +390,11 @@ class ScanStages {
     }
     for (const int slot : waiting_) {
       const Track& track = picture_.tracks.at(slot);
-      const Gaussian<4> now = at_constant_velocity(track.kinematics, state().time_s - track.time_s);
       bool is_rival = false;
-      for_each_in_reach(now, [&](int plot) {
+      for_each_in_reach(track, [&](int plot) {
         state().plots.keep(plot);
-        is_rival = is_rival || is_candidate_[static_cast<std::size_t>(plot)] != 0;
+        is_rival = is_rival ||
+                   (is_candidate_[static_cast<std::size_t>(plot)] != 0 && is_near(track, plot));
       });
       if (is_rival) rivals_.push_back(slot);
     }
@@ -382,19 +402,19 @@ class ScanStages {
       if (state().plots[plot].beam_rad > state().beam.angle_rad()) state().plots.keep(plot);
   }
 
-  /// Calls `f(plot)` for the plots that may be in the gate of a belief, about.
+  /// Calls `f(plot)` for the plots that may be in the gate of a track, about.
   template <class Function>
-  void for_each_in_reach(const Gaussian<4>& now, const Function& function) const noexcept {
+  void for_each_in_reach(const Track& track, const Function& function) const noexcept {
+    const Gaussian<2> now =
+        position_at_constant_velocity(track.kinematics, state().time_s - track.time_s);
+    const double own_m2 = now.covariance.trace(), threshold = picture_.gate.threshold();
+    const double outlier_variance = picture_.config.outlier_variance();
     state().plots.for_each_near(
-        {now.mean[0], now.mean[2]}, [&](double plot_m2) { return gate_reach_m(now, plot_m2); },
+        now.mean,
+        [&](double plot_m2) {
+          return std::sqrt(threshold * (own_m2 + outlier_variance * plot_m2));
+        },
         function);
-  }
-
-  /// How far a plot of such a variance may be from a belief and in its gate, about.
-  [[nodiscard]] double gate_reach_m(const Gaussian<4>& belief, double plot_m2) const noexcept {
-    const double own_m2 = belief.covariance(0, 0) + belief.covariance(2, 2);
-    return std::sqrt(picture_.gate.threshold() *
-                     (own_m2 + picture_.config.outlier_variance() * plot_m2));
   }
 
   /// Predicts tracks, each to the time of its plot.
@@ -531,7 +551,8 @@ class ScanStages {
     track.nis = std::numeric_limits<double>::quiet_NaN();
     if (probabilities.best < 0) return;
     const CandidatePlot& best = candidates_of(track)[std::size_t(probabilities.best)];
-    const Vec<double, 2> innovation = whitened_innovation(track.kinematics, best.z, best.nominal_r);
+    const Vec<double, 2> innovation =
+        whitened_innovation(position_in(track.kinematics), best.z, best.nominal_r);
     track.nis = innovation.squaredNorm();
     if (is_seen(probabilities)) track.consistency.add(innovation);
     track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
@@ -555,26 +576,34 @@ class ScanStages {
   void confirm_and_delete() noexcept {
     const double shown_misses =
         state().detection_probability.likely_misses(picture_.config.shown_probability);
-    picture_.tracks.remove_if([&](Track& track) {
-      if (touched_[static_cast<std::size_t>(track.slot)] == 0) return false;
+    for (const int slot : touched_) {
+      Track& track = picture_.tracks.at(slot);
       if (confirm_or_coast(picture_.config, state().radar, shown_misses, track))
         picture_.announce(TrackEvent::kCoasting, track);
       LossReason reason = reason_to_delete(picture_.config, state().radar, track);
       if (reason == LossReason::kUncertain && picture_.scan_time_s < track.seen_until_s)
         reason = LossReason::kNone;  // its vessel will report
-      if (reason != LossReason::kNone) picture_.announce(TrackEvent::kLost, track, reason);
-      return reason != LossReason::kNone;
-    });
-    std::erase_if(due_, [&](int slot) { return !picture_.tracks.in_use(slot); });
+      if (reason != LossReason::kNone) lose(track, reason);
+    }
+    forget_lost();
   }
 
   void delete_duplicates() noexcept {
-    for (const int slot : duplicates_.find(picture_.tracks, due_, picture_.longest_period_s())) {
-      picture_.announce(TrackEvent::kLost, picture_.tracks.at(slot), LossReason::kDuplicate);
-      picture_.tracks.vacate(slot);
-    }
+    for (const int slot : duplicates_.find(picture_.tracks, due_, picture_.longest_period_s()))
+      lose(picture_.tracks.at(slot), LossReason::kDuplicate);
+    forget_lost();
+  }
+
+  void lose(const Track& track, LossReason reason) noexcept {
+    picture_.announce(TrackEvent::kLost, track, reason);
+    picture_.tracks.vacate(track.slot);
+  }
+
+  /// Takes lost tracks from all lists.
+  void forget_lost() noexcept {
     picture_.tracks.close_gaps();
-    std::erase_if(due_, [&](int slot) { return !picture_.tracks.in_use(slot); });
+    for (std::vector<int>* slots : {&due_, &touched_})
+      std::erase_if(*slots, [&](int slot) { return !picture_.tracks.in_use(slot); });
   }
 
   /// Starts tentative tracks.
@@ -594,9 +623,11 @@ class ScanStages {
           look.learned = start.learned;
         });
     picture_.tracks.close_gaps();
-    for (const int slot : picture_.tracks.slots())
-      if (picture_.is_new(picture_.tracks.at(slot)))
-        picture_.announce(TrackEvent::kStarted, picture_.tracks.at(slot));
+    const std::span<const int> slots = picture_.tracks.slots();
+    const auto is_before = [&](int slot) { return !picture_.is_new(picture_.tracks.at(slot)); };
+    for (auto slot = std::find_if(slots.rbegin(), slots.rend(), is_before).base();
+         slot != slots.end(); ++slot)
+      picture_.announce(TrackEvent::kStarted, picture_.tracks.at(*slot));
     picture_.newest_before = picture_.next_tentative_id + 1;
   }
 
@@ -628,7 +659,7 @@ class ScanStages {
   std::vector<int> waiting_;     ///< and of those whose gate it is in
   std::vector<int> rivals_;      ///< of these that have a candidate in common with one that is due
   std::vector<int> competing_;   ///< both
-  std::vector<char> touched_;    ///< by slot: whether this call has counted for the track
+  std::vector<int> touched_;     ///< of the tracks for which this call has counted
   std::vector<BeamArc> arcs_;    ///< of the tracks that are due
   std::vector<int> near_plot_;   ///< by slot: a plot in the gate of a track, or `kNoPlot`
   std::vector<int> rival_plot_;  ///< by plot: a rival of it, or itself

@@ -126,6 +126,24 @@ inline Gaussian<2> position_in(const Gaussian<4>& kinematics) noexcept {
   return {kinematics.mean(rows), kinematics.covariance(rows, rows)};
 }
 
+/// The position in such a belief moved in time at constant velocity, without the velocity.
+inline Gaussian<2> position_at_constant_velocity(const Gaussian<4>& kinematics,
+                                                 double dt_s) noexcept {
+  Gaussian<2> position;
+  for (const int i : {0, 1}) {
+    const int north_or_east = 2 * i;
+    position.mean[i] = kinematics.mean[north_or_east] + dt_s * kinematics.mean[north_or_east + 1];
+    for (const int j : {0, 1}) {
+      const auto moved = [&](int column) {
+        return kinematics.covariance(north_or_east, column) +
+               dt_s * kinematics.covariance(north_or_east + 1, column);
+      };
+      position.covariance(i, j) = moved(2 * j) + dt_s * moved(2 * j + 1);
+    }
+  }
+  return position;
+}
+
 /// Of the velocity in a belief over `[x, vx, y, vy]`.
 inline Mat<double, 2, 2> velocity_covariance(const Gaussian<4>& kinematics) noexcept {
   const auto rows = Eigen::seqN(1, Eigen::fix<2>, Eigen::fix<2>);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -74,23 +75,20 @@ class TrackListOf {
 
   /// The same for one of many: it leaves a gap in the list of slots, for `close_gaps`.
   void vacate(int slot) noexcept {
+    const std::size_t place = place_[static_cast<std::size_t>(slot)];
     in_use_[static_cast<std::size_t>(slot)] = 0;
     vacant_.push_back(slot);
-    slots_[place_[static_cast<std::size_t>(slot)]] = kGap;
+    slots_[place] = kGap;
+    first_gap_ = std::min(first_gap_, place);
   }
 
   /// Makes the list of slots one without gaps.
   void close_gaps() noexcept {
-    slots_.erase(std::remove(slots_.begin(), slots_.end(), kGap), slots_.end());
-    number_places();
-  }
-
-  /// Removes the tracks for which the predicate holds, which is called for all in order.
-  template <class Predicate>
-  void remove_if(Predicate&& predicate) noexcept {
-    for (const int slot : slots_)
-      if (predicate(at(slot))) vacate(slot);
-    close_gaps();
+    const auto first = std::min(first_gap_, slots_.size());
+    slots_.erase(std::remove(slots_.begin() + std::ptrdiff_t(first), slots_.end(), kGap),
+                 slots_.end());
+    number_places(first);
+    first_gap_ = kNoGap;
   }
 
   /// Takes the tracks of another list of the same capacity, each in its slot.
@@ -121,14 +119,15 @@ class TrackListOf {
       at(slot).archive(fields);
       at(slot).slot = slot;
     }
-    number_places();
+    number_places(0);
   }
 
  private:
   static constexpr int kGap = -1;
+  static constexpr std::size_t kNoGap = std::numeric_limits<std::size_t>::max();
 
-  void number_places() noexcept {
-    for (std::size_t place = 0; place < slots_.size(); ++place)
+  void number_places(std::size_t first) noexcept {
+    for (std::size_t place = first; place < slots_.size(); ++place)
       place_[static_cast<std::size_t>(slots_[place])] = place;
   }
 
@@ -153,6 +152,7 @@ class TrackListOf {
   std::vector<std::size_t> place_;  ///< by slot, where it is in `slots_`
   std::vector<int> slots_;          ///< in use, of older tracks first; between removals with gaps
   std::vector<int> vacant_;
+  std::size_t first_gap_ = kNoGap;  ///< place of the first gap
 };
 
 using TrackList = TrackListOf<Track>;
