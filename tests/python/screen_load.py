@@ -21,7 +21,7 @@ SWEEPS, CELLS, TOGETHER = 4096, 2048, 32
 
 
 class Crowd(Harbor):
-    """Targets on straight courses."""
+    """Targets on straight courses, which have been tracked for six minutes."""
 
     def __init__(self, count):
         super().__init__()
@@ -29,7 +29,10 @@ class Crowd(Harbor):
         self.place_m = self.rng.uniform(-8000.0, 8000.0, (count, 2))
         self.velocity_mps = self.rng.uniform(-6.0, 6.0, (count, 2))
         for k, (place, velocity) in enumerate(zip(self.place_m, self.velocity_mps, strict=True)):
-            self.add(k + 1, *place.tolist(), *velocity.tolist())
+            ago_s = 30.0 * np.arange(11, 0, -1)
+            was_m = place - ago_s[:, np.newaxis] * velocity
+            past = np.column_stack([self.time_s - ago_s, was_m]).tolist()
+            self.add(k + 1, *place.tolist(), *velocity.tolist(), history=past)
 
     def watch(self):
         """Move the targets; alarms are another matter."""

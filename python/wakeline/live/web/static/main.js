@@ -14,7 +14,8 @@ const KEPT = "wakeline-settings";
 const PANEL_MS = 500;
 const BLINK_MS = 500;
 const FRAME_MS = 40;
-const SYMBOLS_MS = 90; // in which a vessel moves less than a pixel
+const SYMBOLS_MS = [90, 1000]; // between drawings of the symbols: least and most
+const STEP_PX = 0.5; // that they move in between
 const TRAIL_MINUTES = [1, 3, 6, 15, 30];
 const VECTOR_MINUTES = [1, 3, 6, 12, 30];
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 10, 20, 50];
@@ -591,7 +592,7 @@ function frame(now_ms) {
   const due = now_ms - panel_ms > PANEL_MS;
   if (now_ms - drawn_ms < FRAME_MS || document.hidden) return;
   const blinks = Math.floor(now_ms / BLINK_MS) % 2 === 1;
-  const moves = connected && !(store.replay?.paused) && now_ms - symbols_ms > SYMBOLS_MS;
+  const moves = connected && !(store.replay?.paused) && now_ms - symbols_ms > pauseOfSymbols();
   const symbols = dirty || moves || blinks !== blink || due || panelDue;
   if (!symbols && !(settings.show.echoes && echoes.changed)) return;
   const began = performance.now();
@@ -609,6 +610,13 @@ function frame(now_ms) {
   spent.frames += 1;
   spent.total_ms += took_ms;
   spent.most_ms = Math.max(spent.most_ms, took_ms);
+}
+
+/** How long the symbols can stay as they are drawn. */
+function pauseOfSymbols() {
+  const [least, most] = SYMBOLS_MS;
+  const px_per_s = overlay.fastest_px * (store.replay?.speed ?? 1);
+  return Math.min(Math.max((1000 * STEP_PX) / px_per_s, least), most);
 }
 
 /** All but the echoes: these change with every frame, the rest slowly. */

@@ -6,7 +6,9 @@ const FONT = '12px system-ui, "Segoe UI", Roboto, sans-serif';
 const SMALL = '11px system-ui, "Segoe UI", Roboto, sans-serif';
 const LABELS_MS = 400;
 const ELLIPSE_STDS = 2.4477; // 95 % of a position
-const MOST_PAST_SHOWN = 12;
+const MOST_PAST_SHOWN = 12; // of a target, fewer where there are many targets
+const LEAST_PAST_SHOWN = 4;
+const MOST_DOTS = 4000;
 const TARGET_PX = 6;
 const DANGER_PX = 10;
 const CIRCLE_PX = 8;
@@ -25,6 +27,7 @@ export class Overlay {
     this.widths = new Map();
     this.vectors = new Map();
     this.circles = new Map();
+    this.fastest_px = Infinity; // of all symbols, a second
   }
 
   draw(scene) {
@@ -43,7 +46,7 @@ export class Overlay {
     this.drawOwn();
     if (settings.show.plots) this.drawPlots();
     const targets = this.targets(time_s);
-    if (settings.show.past) for (const one of targets) this.drawPast(one);
+    if (settings.show.past) this.drawPast(targets);
     for (const one of targets) this.drawVector(one);
     this.strokeVectors();
     if (settings.show.uncertainty) this.drawEllipses(targets);
@@ -129,13 +132,9 @@ export class Overlay {
     let made = this.texts.get(key);
     if (!made) {
       if (this.texts.size >= MOST_TEXTS) this.texts.clear();
-      made = document.createElement("canvas");
-      const c = made.getContext("2d", this.kind);
-      c.font = font;
-      made.width = Math.ceil((c.measureText(text).width + 2 * TEXT_PX) * this.ratio);
-      made.height = Math.ceil(18 * this.ratio);
-      c.scale(this.ratio, this.ratio);
-      this.write(c, text, TEXT_PX, 9, color, font, "left");
+      this.context.font = font;
+      const width = this.context.measureText(text).width + 2 * TEXT_PX;
+      made = this.picture(width, 18, (c) => this.write(c, text, TEXT_PX, 9, color, font, "left"));
       this.texts.set(key, made);
     }
     return made;
@@ -207,22 +206,27 @@ export class Overlay {
     this.vectors.clear();
   }
 
-  /** A circle as a picture: a thousand of them are copied faster than drawn. */
+  /** A picture that `paint` draws with a context: it is copied faster than drawn. */
+  picture(width, height, paint) {
+    const canvas = new OffscreenCanvas(Math.ceil(width * this.ratio), Math.ceil(height * this.ratio));
+    const c = canvas.getContext("2d", this.kind);
+    c.scale(this.ratio, this.ratio);
+    paint(c);
+    return canvas.transferToImageBitmap();
+  }
+
   circle(color, dashed) {
-    const { ratio } = this;
-    const key = `${color} ${dashed} ${ratio}`;
+    const key = `${color} ${dashed} ${this.ratio}`;
     let made = this.circles.get(key);
     if (!made) {
-      made = document.createElement("canvas");
-      made.width = made.height = Math.ceil(2 * CIRCLE_PX * ratio);
-      const c = made.getContext("2d", this.kind);
-      c.scale(ratio, ratio);
-      c.strokeStyle = color;
-      c.lineWidth = 1.6;
-      c.setLineDash(dashed ? [3, 3] : []);
-      c.beginPath();
-      c.arc(CIRCLE_PX, CIRCLE_PX, TARGET_PX, 0, TURN);
-      c.stroke();
+      made = this.picture(2 * CIRCLE_PX, 2 * CIRCLE_PX, (c) => {
+        c.strokeStyle = color;
+        c.lineWidth = 1.6;
+        c.setLineDash(dashed ? [3, 3] : []);
+        c.beginPath();
+        c.arc(CIRCLE_PX, CIRCLE_PX, TARGET_PX, 0, TURN);
+        c.stroke();
+      });
       this.circles.set(key, made);
     }
     return made;
@@ -241,8 +245,10 @@ export class Overlay {
   // Targets -----------------------------------------------------------------------------------------
 
   targets(time_s) {
-    const { view, store, selected } = this.scene;
+    const { view, store, selected, own } = this.scene;
+    const { x0, xn, xe, y0, yn, ye } = view.projection;
     const shown = [];
+    this.fastest_px = 0;
     const dangers = store.dangerOfEach();
     const alarmed = new Map();
     for (const alarm of store.alarms) {
@@ -250,8 +256,8 @@ export class Overlay {
       for (const id of alarm.tracks) alarmed.set(id, (alarmed.get(id) ?? false) || !alarm.acknowledged);
     }
     for (const track of store.tracks.values()) {
-      const place = store.at(track, time_s);
-      const [x, y] = view.toScreen(place.north, place.east);
+      const { north, east } = store.at(track, time_s);
+      const [x, y] = [x0 + xn * north + xe * east, y0 + yn * north + ye * east];
       if (x < -60 || y < -60 || x > view.width + 60 || y > view.height + 60) continue;
       track.x = x; // beside the values of the message, so that a frame makes no objects
       track.y = y;
@@ -259,6 +265,7 @@ export class Overlay {
       track.alarmed = alarmed.has(track.id);
       track.flashes = alarmed.get(track.id) ?? false;
       track.selected = track.id === selected;
+      this.fastest_px = Math.max(this.fastest_px, view.scale * (Math.hypot(track.vnorth, track.veast) + own.speed));
       shown.push(track);
     }
     return shown;
@@ -340,21 +347,28 @@ export class Overlay {
     this.vector(target.x, target.y, vnorth, veast, this.colorOf(target));
   }
 
-  drawPast(target) {
+  drawPast(targets) {
     const { view, palette, settings, time_s } = this.scene;
     const c = this.context;
+    const { ratio } = this;
+    const { x0, xn, xe, y0, yn, ye } = view.projection;
+    const whole = (v) => Math.round((v - 1.5) * ratio) / ratio; // a pixel that is not cut is filled faster
+    const length_s = settings.trailMinutes * 60;
+    const most = Math.min(Math.max(Math.floor(MOST_DOTS / targets.length), LEAST_PAST_SHOWN), MOST_PAST_SHOWN);
+    const step_s = Math.max(length_s / most, 6);
     c.fillStyle = palette.past;
-    const step_s = Math.max((settings.trailMinutes * 60) / MOST_PAST_SHOWN, 6);
-    let next_s = Infinity;
-    for (let k = target.past.length - 1; k >= 0; k -= 1) {
-      const [when, north, east] = target.past[k];
-      if (time_s - when > settings.trailMinutes * 60) break;
-      if (when > next_s) continue;
-      next_s = when - step_s + 0.5;
-      const [x, y] = view.toScreen(north, east);
-      if (Math.hypot(x - target.x, y - target.y) < 5) continue;
-      c.globalAlpha = 1 - 0.7 * Math.min((time_s - when) / (settings.trailMinutes * 60), 1);
-      c.fillRect(x - 1.5, y - 1.5, 3, 3);
+    for (const target of targets) {
+      let next_s = Infinity;
+      for (let k = target.past.length - 1; k >= 0; k -= 1) {
+        const [when, north, east] = target.past[k];
+        if (time_s - when > length_s) break;
+        if (when > next_s) continue;
+        next_s = when - step_s + 0.5;
+        const [x, y] = [x0 + xn * north + xe * east, y0 + yn * north + ye * east];
+        if (Math.hypot(x - target.x, y - target.y) < 5) continue;
+        c.globalAlpha = 1 - 0.7 * Math.min((time_s - when) / length_s, 1);
+        c.fillRect(whole(x), whole(y), 3, 3);
+      }
     }
     c.globalAlpha = 1;
   }

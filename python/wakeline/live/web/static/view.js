@@ -65,11 +65,17 @@ export class View {
     return [up * cos - right * sin, up * sin + right * cos];
   }
 
-  toScreen(north, east) {
-    const [dn, de] = [north - this.center[0], east - this.center[1]];
-    const [cos, sin] = [Math.cos(this.rotation), Math.sin(this.rotation)];
+  /** The map of places to pixels: x = x0 + xn north + xe east, and y likewise. */
+  get projection() {
+    const [cos, sin] = [this.scale * Math.cos(this.rotation), this.scale * Math.sin(this.rotation)];
     const [mx, my] = this.middle;
-    return [mx + this.scale * (de * cos - dn * sin), my - this.scale * (dn * cos + de * sin)];
+    const [north, east] = this.center;
+    return { x0: mx + north * sin - east * cos, xn: -sin, xe: cos, y0: my + north * cos + east * sin, yn: -cos, ye: -sin };
+  }
+
+  toScreen(north, east) {
+    const { x0, xn, xe, y0, yn, ye } = this.projection;
+    return [x0 + xn * north + xe * east, y0 + yn * north + ye * east];
   }
 
   toPlace(x, y) {
