@@ -83,7 +83,7 @@ ValueError
 
   py::class_<PyStep>(m, "Step", "Result of a measurement update; true if the reading was accepted.")
       .def("__bool__", [](const PyStep& s) { return s.status == Status::kOk; })
-      .def_readonly("status", &PyStep::status)
+      .def_readonly("status", &PyStep::status, "accepted, or why the reading changed nothing")
       .def_property_readonly(
           "innovation", [](const PyStep& s) { return to_array(s.innovation); },
           "(M,) measured minus predicted, angles wrapped")
@@ -91,7 +91,7 @@ ValueError
           "innovation_covariance",
           [](const PyStep& s) { return to_array(s.innovation_covariance); }, "(M, M)")
       .def_readonly("nis", &PyStep::nis, "normalized innovation squared")
-      .def_readonly("log_likelihood", &PyStep::log_likelihood)
+      .def_readonly("log_likelihood", &PyStep::log_likelihood, "of the reading, before the update")
       .def(py::pickle([](const PyStep& s) { return fields_of(s); },
                       [](const py::tuple& fields) { return step_of(fields); }))
       .def("__repr__", [](const PyStep& s) {

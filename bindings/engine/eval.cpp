@@ -116,7 +116,9 @@ void define_set_distance(py::module_& m) {
                                  R"(GOSPA (alpha = 2) and OSPA of one scan.
 
 The parts are in metres to the power of the order: ``gospa_m ** order = localisation + missed + false_tracks``.)");
-  result.def_readonly("gospa_m", &SetDistance::gospa_m)
+  result
+      .def_readonly("gospa_m", &SetDistance::gospa_m,
+                    "Distance from errors, missed targets and false tracks.")
       .def_readonly("localisation", &SetDistance::localisation, "Sum over pairs of d ** order.")
       .def_readonly("missed", &SetDistance::missed,
                     "cutoff_m ** order / 2 for each target without a track.")

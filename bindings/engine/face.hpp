@@ -52,7 +52,7 @@ void define_face(py::class_<Estimator>& face) {
           },
           "The belief; of several models moment-matched, over the state where all share one, else "
           "over [x, vx, y, vy].")
-      .def_property_readonly("started", &Estimator::started);
+      .def_property_readonly("started", &Estimator::started, "Whether it has a belief.");
   define_run(face, "run", &run<Estimator>, kRunDoc);
 }
 

@@ -170,8 +170,8 @@ void define_strobe_echo(py::module_& m) {
       .def_property_readonly(
           "covariance", [](const StrobeEcho& e) { return to_array(e.covariance); },
           "(2, 2) of `range_m` and `bearing_rad`")
-      .def_readonly("total_amplitude", &StrobeEcho::total_amplitude)
-      .def_readonly("peak_amplitude", &StrobeEcho::peak_amplitude)
+      .def_readonly("total_amplitude", &StrobeEcho::total_amplitude, "sum over the measured cells")
+      .def_readonly("peak_amplitude", &StrobeEcho::peak_amplitude, "largest of the measured cells")
       .def_readonly("cells", &StrobeEcho::cells, "measured")
       .def_readonly("echoes", &StrobeEcho::echoes,
                     "separate echoes, measured or not; 0 if there were too many to separate")

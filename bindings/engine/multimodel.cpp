@@ -372,8 +372,10 @@ ValueError
             return to_array(chain.transition(dt_s));
           },
           py::arg("dt_s"), "P(dt), (K, K). Raises ValueError for a negative step.")
-      .def_property_readonly("modes", [](const Chain& chain) { return chain.modes(); })
-      .def_property_readonly("continuous", &Chain::continuous)
+      .def_property_readonly(
+          "modes", [](const Chain& chain) { return chain.modes(); }, "Number of modes, K.")
+      .def_property_readonly("continuous", &Chain::continuous,
+                             "Whether the chain is in continuous time.")
       .def("_arguments", &chain_arguments);
 
   py::class_<AnyMixture, AnyEstimator>(m, "MultiModelEstimator",

@@ -854,11 +854,11 @@ Returns
              return UncertaintyEllipse::of(belief.covariance, probability);
            }),
            py::arg("covariance"), py::arg("probability") = 0.95)
-      .def_readonly("semi_major_m", &UncertaintyEllipse::semi_major_m)
-      .def_readonly("semi_minor_m", &UncertaintyEllipse::semi_minor_m)
+      .def_readonly("semi_major_m", &UncertaintyEllipse::semi_major_m, "half of the long axis")
+      .def_readonly("semi_minor_m", &UncertaintyEllipse::semi_minor_m, "half of the short axis")
       .def_readonly("major_axis_rad", &UncertaintyEllipse::major_axis_rad,
                     "direction of the long axis, 0 .. pi clockwise from north")
-      .def_readonly("area_m2", &UncertaintyEllipse::area_m2);
+      .def_readonly("area_m2", &UncertaintyEllipse::area_m2, "of the ellipse");
 }
 
 }  // namespace

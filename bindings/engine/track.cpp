@@ -426,7 +426,7 @@ void define_track(py::module_& parent) {
       .def_readonly("track_id", &Event::track_id, "0 of full")
       .def_readonly("tentative_id", &Event::tentative_id,
                     "the negative number before confirmation; 0 for a designated track")
-      .def_readonly("time_s", &Event::time_s)
+      .def_readonly("time_s", &Event::time_s, "of the scan")
       .def("__repr__", [](const Event& event) {
         const std::string reason = to_string(event.reason);
         return "Event(kind=" + std::string(to_string(event.kind)) +
@@ -440,7 +440,7 @@ void define_track(py::module_& parent) {
           "plot_track_id", &PyReport::plot_track_id,
           "(n,) the track that each plot most likely belongs to; negative for a tentative "
           "one, 0 for none")
-      .def_readonly("events", &PyReport::events)
+      .def_readonly("events", &PyReport::events, "of this scan, each an Event")
       .def_readonly("rejected_plots", &PyReport::rejected_plots,
                     "plots that are not finite or out of range, have a negative range, a bearing "
                     "too large to be an angle "
@@ -459,7 +459,7 @@ void define_track(py::module_& parent) {
                     "negative_time_step or not_finite where its time is not of now")
       .def_readonly("track_id", &PyReportResult::track_id,
                     "of the track that its vessel is believed to be; 0 without one")
-      .def_readonly("events", &PyReportResult::events)
+      .def_readonly("events", &PyReportResult::events, "of this report, each an Event")
       .def("__repr__", [](const PyReportResult& r) {
         return "<ReportResult: " + std::string(to_string(r.status)) + ", track " +
                std::to_string(r.track_id) + ">";

@@ -98,11 +98,15 @@ void define_keeping(py::class_<AnyTracker>& type, const char* save_doc) {
           "radar",
           [](const AnyTracker& tracker) {
             return tracker.visit([](const auto& one) { return Radar(one.radar()); });
-          })
-      .def_property_readonly("config", [](const AnyTracker& tracker) {
-        return tracker.visit(
-            [](const auto& one) { return std::decay_t<decltype(one.config())>(one.config()); });
-      });
+          },
+          "The radar it was made for, the first of several.")
+      .def_property_readonly(
+          "config",
+          [](const AnyTracker& tracker) {
+            return tracker.visit(
+                [](const auto& one) { return std::decay_t<decltype(one.config())>(one.config()); });
+          },
+          "Its settings.");
 }
 
 }  // namespace wakeline::python

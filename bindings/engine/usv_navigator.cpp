@@ -571,7 +571,7 @@ ValueError
            py::arg("gyro_rad_s"), py::arg("rate_std_rad_s") = deg(0.1),
            "A rate of turn at the time of a reading of the IMU's gyro; 7 or 8 states.")
       .def_property_readonly("estimate", &PyNavigator::estimate, "The belief, a Gaussian.")
-      .def_property_readonly("started", &PyNavigator::started)
+      .def_property_readonly("started", &PyNavigator::started, "Whether it has a belief.")
       .def(
           "run",
           [](PyNavigator& self, const DoubleArray& time, const Arrays& imu, const Arrays& gnss,

@@ -469,7 +469,7 @@ void define_plots(py::module_& m) {
   py::class_<PyVideoPlots>(m, "VideoPlots",
                            "Plots of radar video as arrays, in order of the ends of "
                            "their echoes.")
-      .def_readonly("time_s", &PyVideoPlots::time_s)
+      .def_readonly("time_s", &PyVideoPlots::time_s, "(n,) amplitude-weighted means.")
       .def_readonly("range_m", &PyVideoPlots::range_m, "(n,) amplitude-weighted means.")
       .def_readonly("bearing_rad", &PyVideoPlots::bearing_rad,
                     "(n,) amplitude-weighted means, clockwise from north, 0 to 2 pi.")
@@ -477,13 +477,18 @@ void define_plots(py::module_& m) {
           "covariance", &PyVideoPlots::covariance,
           "(n, 2, 2) of range_m and bearing_rad: weighted spread of the echo divided by its "
           "effective number of cells, plus a twelfth of a cell's and a sweep's square.")
-      .def_readonly("range_extent_m", &PyVideoPlots::range_extent_m)
-      .def_readonly("bearing_extent_rad", &PyVideoPlots::bearing_extent_rad)
-      .def_readonly("peak_amplitude", &PyVideoPlots::peak_amplitude)
-      .def_readonly("total_amplitude", &PyVideoPlots::total_amplitude)
+      .def_readonly("range_extent_m", &PyVideoPlots::range_extent_m,
+                    "(n,) from the first to the last cell of the echo.")
+      .def_readonly("bearing_extent_rad", &PyVideoPlots::bearing_extent_rad,
+                    "(n,) from the first to the last sweep of the echo.")
+      .def_readonly("peak_amplitude", &PyVideoPlots::peak_amplitude, "(n,) largest amplitude.")
+      .def_readonly("total_amplitude", &PyVideoPlots::total_amplitude,
+                    "(n,) sum of the amplitudes.")
       .def_readonly("cells", &PyVideoPlots::cells, "(n,) cells above their thresholds.")
-      .def_readonly("touches_first_cell", &PyVideoPlots::touches_first_cell)
-      .def_readonly("touches_last_cell", &PyVideoPlots::touches_last_cell)
+      .def_readonly("touches_first_cell", &PyVideoPlots::touches_first_cell,
+                    "(n,) true where the echo may begin before the video.")
+      .def_readonly("touches_last_cell", &PyVideoPlots::touches_last_cell,
+                    "(n,) true where the echo may continue beyond the video.")
       .def_readonly("cut", &PyVideoPlots::cut,
                     "(n,) true where the plot may be a part of an echo: closed at `max_sweeps`, or "
                     "next to missing sweeps.")
@@ -500,7 +505,7 @@ void define_plots(py::module_& m) {
                     "Sweeps rejected at the azimuth of the last one.")
       .def_readonly("too_long", &ExtractionCounts::too_long, "Sweeps rejected for their length.")
       .def_readonly("invalid", &ExtractionCounts::invalid, "Invalid sweeps, rejected.")
-      .def_readonly("plots", &ExtractionCounts::plots)
+      .def_readonly("plots", &ExtractionCounts::plots, "Number of plots.")
       .def_readonly("too_small", &ExtractionCounts::too_small, "Echoes too small for a plot.")
       .def_readonly("too_large", &ExtractionCounts::too_large, "Echoes too large for a plot.")
       .def_readonly("cut", &ExtractionCounts::cut, "Plots that may be parts of echoes.");
@@ -577,7 +582,8 @@ VideoPlots
            "sweeps, with its counts and clutter map.")
       .def("set_land", &AnyPlotExtractor::set_land, py::arg("land"),
            "Replace the areas, from the next sweep on.")
-      .def_property_readonly("counts", &AnyPlotExtractor::counts)
+      .def_property_readonly("counts", &AnyPlotExtractor::counts,
+                             "Sweeps and echoes so far, as ExtractionCounts.")
       .def_property_readonly("open_echoes", &AnyPlotExtractor::open_echoes,
                              "Number of open echoes.")
       .def_property_readonly("clutter", &AnyPlotExtractor::clutter,
@@ -613,7 +619,7 @@ first_azimuth_rad : float
           [](const AnyScanImage& image) {
             return image.with_view([](const auto& view) { return view.first_azimuth_rad; });
           })
-      .def_property_readonly("azimuth_step_rad", &step_of)
+      .def_property_readonly("azimuth_step_rad", &step_of, "From one row to the next.")
       .def_property_readonly("azimuth_width_rad", &step_of, "Width of a row.")
       .def("__len__",
            [](const AnyScanImage& image) {
@@ -623,11 +629,14 @@ first_azimuth_rad : float
           "start_range_m",
           [](const AnyScanImage& image) {
             return image.with_view([](const auto& view) { return view.start_range_m; });
-          })
-      .def_property_readonly("cell_m",
-                             [](const AnyScanImage& image) {
-                               return image.with_view([](const auto& view) { return view.cell_m; });
-                             })
+          },
+          "Range of the first cell.")
+      .def_property_readonly(
+          "cell_m",
+          [](const AnyScanImage& image) {
+            return image.with_view([](const auto& view) { return view.cell_m; });
+          },
+          "Length of a cell.")
       .def_property_readonly(
           "azimuth_rad",
           [](const AnyScanImage& image) {

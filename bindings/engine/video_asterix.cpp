@@ -270,30 +270,36 @@ void define_video_asterix(py::module_& m) {
 call `Cat240Decoder.unpack`. `source` is 256 SAC + SIC; `sequence` is -1 and `time_s` NaN if missing. `problems` has the
 first 100 as (offset, problem, wanted, got).
 )doc")
-      .def_readonly("offset", &PySweeps::offset)
-      .def_readonly("source", &PySweeps::source)
-      .def_readonly("sequence", &PySweeps::sequence)
-      .def_readonly("cells", &PySweeps::cells)
-      .def_readonly("bits", &PySweeps::bits)
-      .def_readonly("first", &PySweeps::first)
-      .def_readonly("compressed", &PySweeps::compressed)
-      .def_readonly("azimuth_rad", &PySweeps::azimuth_rad)
-      .def_readonly("azimuth_width_rad", &PySweeps::azimuth_width_rad)
-      .def_readonly("time_s", &PySweeps::time_s)
-      .def_readonly("start_range_m", &PySweeps::start_range_m)
-      .def_readonly("cell_m", &PySweeps::cell_m)
-      .def_readonly("octets", &PySweeps::octets)
-      .def_readonly("words", &PySweeps::words)
-      .def_property_readonly("summaries",
-                             [](const PySweeps& self) {
-                               std::vector<py::bytes> all;
-                               for (const std::string& text : self.summaries)
-                                 all.emplace_back(text);
-                               return all;
-                             })
-      .def_readonly("problems", &PySweeps::problems)
-      .def_readonly("problem_count", &PySweeps::problem_count)
-      .def_readonly("consumed", &PySweeps::consumed);
+      .def_readonly("offset", &PySweeps::offset, "(n,) of the record in the file, in octets.")
+      .def_readonly("source", &PySweeps::source, "(n,) 256 SAC + SIC.")
+      .def_readonly("sequence", &PySweeps::sequence, "(n,) number of the message; -1 if missing.")
+      .def_readonly("cells", &PySweeps::cells, "(n,) cells of each sweep.")
+      .def_readonly("bits", &PySweeps::bits, "(n,) of each amplitude: 1, 2, 4, 8, 16 or 32.")
+      .def_readonly("first", &PySweeps::first,
+                    "(n,) index of its first cell in `octets` or `words`.")
+      .def_readonly("compressed", &PySweeps::compressed,
+                    "(n,) octets of a compressed sweep; else 0.")
+      .def_readonly("azimuth_rad", &PySweeps::azimuth_rad,
+                    "(n,) clockwise from north, where the sweep begins.")
+      .def_readonly("azimuth_width_rad", &PySweeps::azimuth_width_rad, "(n,) width of the sweep.")
+      .def_readonly("time_s", &PySweeps::time_s, "(n,) time of day; NaN if missing.")
+      .def_readonly("start_range_m", &PySweeps::start_range_m, "(n,) range of the first cell.")
+      .def_readonly("cell_m", &PySweeps::cell_m, "(n,) length of a cell.")
+      .def_readonly("octets", &PySweeps::octets, "Amplitudes of up to 8 bits, scaled to 8.")
+      .def_readonly("words", &PySweeps::words, "Amplitudes of 16 bits.")
+      .def_property_readonly(
+          "summaries",
+          [](const PySweeps& self) {
+            std::vector<py::bytes> all;
+            for (const std::string& text : self.summaries) all.emplace_back(text);
+            return all;
+          },
+          "Video summaries, octets as the radar sent them.")
+      .def_readonly("problems", &PySweeps::problems,
+                    "The first 100, each (offset, problem, wanted, got).")
+      .def_readonly("problem_count", &PySweeps::problem_count, "Of all problems.")
+      .def_readonly("consumed", &PySweeps::consumed,
+                    "Octets used; the rest belongs before the next piece.");
   py::class_<Decoder>(m, "Cat240Decoder", "ASTERIX category 240 to arrays, piece by piece.")
       .def(py::init())
       .def("decode", &Decoder::decode, py::arg("data"), py::arg("last"),

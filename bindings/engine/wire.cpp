@@ -351,9 +351,8 @@ Numbers that a record does not have are NaN. `problems` has (offset, problem, it
   define_column<bool>(
       records, "test", [](const RadarRecord& row) { return row.test; },
       "(n,) whether it is a simulated or test target");
-  records.def_readonly("problems", &PyRecords::problems).def("__len__", [](const PyRecords& self) {
-    return self.rows.size();
-  });
+  records.def_readonly("problems", &PyRecords::problems, "Each (offset, problem, item).")
+      .def("__len__", [](const PyRecords& self) { return self.rows.size(); });
 
   py::class_<AsterixReader>(
       m, "AsterixDecoder",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import wakeline as wl
-from wakeline import metrics, recording
+from wakeline import metrics, recording, scenario
 from wakeline.tracking import read_settings
 
 ROOT = Path(__file__).parents[2]
@@ -26,6 +26,25 @@ def test_the_python_of_the_readme_ends_in_a_picture(tmp_path, monkeypatch):
     (tmp_path / "readme.py").write_text(block_of_the_readme("python"))
     runpy.run_path("readme.py")
     assert (tmp_path / "joyride.png").stat().st_size > 10_000
+
+
+def python_of(page):
+    return re.findall(r"^```python\n(.*?)^```", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES[1:] if python_of(page)], ids=lambda page: page.name
+)
+def test_the_python_of_a_page_runs(page, tmp_path, monkeypatch):
+    for module in ("matplotlib", "pandas"):
+        pytest.importorskip(module)
+    monkeypatch.chdir(tmp_path)
+    recording.write_plots("plots.csv", recording.load("joyride"))
+    radar = scenario.RadarVideoSimulator(sweeps_per_turn=256, cells=64, beam_width_rad=0.1)
+    recording.write_video("harbour.cat240", radar.turns({}, 2, seed=1))
+    Path("radar.toml").write_text("range_std_m = 6.0\nperiod_s = 2.5\n")
+    Path("page.py").write_text("\n".join(python_of(page)))
+    runpy.run_path("page.py")
 
 
 def test_the_cpp_of_the_readme_is_an_example_that_ctest_runs():

@@ -100,13 +100,21 @@ def members_of(kind: type, place: str) -> Iterator[str]:
         member = inspect.getattr_static(kind, name)
         if isinstance(member, property):
             about = as_markdown(inspect.getdoc(member) or "")
-            if name not in listed:
-                yield f"\n- **`{name}`**: {about}" if about else f"\n- **`{name}`**"
+            if name in listed or _is_of_enum(kind, name):
+                continue
+            if not about and type(member) is property:  # of a static one pybind11 loses it
+                log.warning("%s.%s has no docstring", place, name)
+            yield f"\n- **`{name}`**: {about}" if about else f"\n- **`{name}`**"
         elif callable(getattr(kind, name)) and not inspect.isclass(getattr(kind, name)):
             methods.append(name)
     for name in methods:
         yield f"\n### `{kind.__name__}.{name}`\n"
         yield from described(getattr(kind, name), f"{place}.{name}", name)
+
+
+def _is_of_enum(kind: type, name: str) -> bool:
+    """Whether it is what every enumeration has."""
+    return hasattr(kind, "__members__") and name in ("name", "value")
 
 
 def described(value: Any, place: str, name: str) -> Iterator[str]:

@@ -61,18 +61,22 @@ class LiveTrack:
 
     @property
     def north_m(self) -> float:
+        """North of the origin, m."""
         return self.mean[0]
 
     @property
     def east_m(self) -> float:
+        """East of the origin, m."""
         return self.mean[2]
 
     @property
     def speed_mps(self) -> float:
+        """Speed over ground, m/s."""
         return math.hypot(self.mean[1], self.mean[3])
 
     @property
     def course_rad(self) -> float:
+        """Course over ground, radians clockwise from north."""
         return math.atan2(self.mean[3], self.mean[1]) % (2.0 * math.pi)
 
     @property
