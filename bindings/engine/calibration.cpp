@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct PyCalibration : Calibration, ThreadLock {
 int add_reports(PyCalibration& calibration, std::int64_t vessel, const DoubleArray& time_s,
                 const DoubleArray& north_m, const DoubleArray& east_m,
                 const DoubleArray& vnorth_mps, const DoubleArray& veast_mps,
-                const DoubleArray& position_std_m) {
+                const DoubleArray& position_std_m, const std::optional<DoubleArray>& covariance,
+                const DoubleArray& antenna_north_m, const DoubleArray& antenna_east_m) {
   require_shape(time_s.ndim() <= 1, "time_s", "(n,)", time_s);
   const py::ssize_t rows = time_s.size();
   const DoubleArray north = column("north_m", north_m, rows);
@@ -37,12 +39,28 @@ int add_reports(PyCalibration& calibration, std::int64_t vessel, const DoubleArr
   const DoubleArray vnorth = column("vnorth_mps", vnorth_mps, rows);
   const DoubleArray veast = column("veast_mps", veast_mps, rows);
   const DoubleArray std = column("position_std_m", position_std_m, rows);
+  const DoubleArray antenna_north = column("antenna_north_m", antenna_north_m, rows);
+  const DoubleArray antenna_east = column("antenna_east_m", antenna_east_m, rows);
+  if (covariance)
+    require_shape(covariance->ndim() == 3 && covariance->shape(0) == rows &&
+                      covariance->shape(1) == 2 && covariance->shape(2) == 2,
+                  "covariance", shape_text({rows, 2, 2}), *covariance);
   const auto hold = calibration.hold();
   int left_out = 0;
-  for (py::ssize_t k = 0; k < rows; ++k)
-    if (!ok(calibration.report({vessel, time_s.data()[k], north.data()[k], east.data()[k],
-                                vnorth.data()[k], veast.data()[k], std.data()[k]})))
-      ++left_out;
+  for (py::ssize_t k = 0; k < rows; ++k) {
+    ReferenceReport report{.vessel = vessel,
+                           .time_s = time_s.data()[k],
+                           .north_m = north.data()[k],
+                           .east_m = east.data()[k],
+                           .vnorth_mps = vnorth.data()[k],
+                           .veast_mps = veast.data()[k],
+                           .position_std_m = std.data()[k],
+                           .antenna_m = {antenna_north.data()[k], antenna_east.data()[k]}};
+    if (covariance)
+      report.covariance = Eigen::Map<const Eigen::Matrix<double, 2, 2, Eigen::RowMajor>>(
+          covariance->data() + 4 * k);
+    if (!ok(calibration.report(report))) ++left_out;
+  }
   return left_out;
 }
 
@@ -103,8 +121,10 @@ CalibratedOffset offset_of(const py::tuple& state) {
 void define_calibration(py::module_& m) {
   define_struct<CalibrationConfig>(m, "CalibrationConfig", "Parameters of `Calibration`.");
 
-  py::class_<CalibratedOffset> offset(m, "CalibratedOffset",
-                                      "One offset of a radar, measured minus true.");
+  py::class_<CalibratedOffset> offset(
+      m, "CalibratedOffset",
+      "One offset of a radar, measured minus true, or less that of the "
+      "other radar.");
   offset
       .def_readonly("value", &CalibratedOffset::value,
                     "m, rad or s; NaN without any plot of a reported vessel")
@@ -131,6 +151,10 @@ gate.)");
   result.def_readonly("range_m", &R::range_m, "CalibratedOffset of the range, m")
       .def_readonly("bearing_rad", &R::bearing_rad, "CalibratedOffset of the bearing, rad")
       .def_readonly("time_s", &R::time_s, "CalibratedOffset of the radar's clock, s")
+      .def_readonly("other_range_m", &R::other_range_m,
+                    "CalibratedOffset of the range of the other radar, where the reports are its "
+                    "tracks, m")
+      .def_readonly("other_bearing_rad", &R::other_bearing_rad, "the same of its bearing, rad")
       .def_property_readonly(
           "covariance", [](const R& one) { return to_array(one.covariance); },
           "(3, 3) of range, bearing and time offset")
@@ -173,8 +197,8 @@ gate.)");
   py::class_<PyCalibration> calibration(m, "Calibration",
                                         R"(Range, bearing and time offset of a radar from reports.
 
-Plots of vessels whose positions are known by their reports (AIS, GNSS) give the three offsets with
-their standard deviations, by robust weighted least squares. Each vessel's echo may have a constant
+Plots of vessels whose positions are known by their reports (AIS, GNSS) or by the tracks of another
+radar give the three offsets with their standard deviations, by robust weighted least squares. Each vessel's echo may have a constant
 offset from the reported position, which is estimated, too. An offset is determined only if there
 are enough matches and its standard deviation is below the limit. Reports and plots are given in
 order of time, each of either kind. Memory is bounded.
@@ -197,7 +221,9 @@ ValueError
       .def("add_reports", &add_reports, py::arg("vessel"), py::arg("time_s"), py::kw_only(),
            py::arg("north_m"), py::arg("east_m"), py::arg("vnorth_mps") = kUnknown,
            py::arg("veast_mps") = kUnknown, py::arg("position_std_m") = 5.0,
-           R"(Take position reports of one vessel.
+           py::arg("covariance") = py::none(), py::arg("antenna_north_m") = kUnknown,
+           py::arg("antenna_east_m") = kUnknown,
+           R"(Take position reports of one vessel, or its track by another radar.
 
 Parameters
 ----------
@@ -209,11 +235,16 @@ vnorth_mps, veast_mps : (n,) array or float, optional
     Velocity, NaN where unknown. With velocities, positions between reports are on a cubic.
 position_std_m : (n,) array or float
     Standard deviation per axis of the part that differs from report to report.
+covariance : (n, 2, 2) array, optional
+    Of [north, east] by a track, in place of `position_std_m`.
+antenna_north_m, antenna_east_m : (n,) array or float
+    Antenna of the other radar. Its offsets are then taken for unknown, and the offsets that are
+    found are those of this radar less those of that one. NaN: the positions are reported.
 
 Returns
 -------
 int
-    Number of reports left out: not finite, not after the last one of the vessel, or of one vessel
+    Number of reports left out: not finite, of a covariance that is none, not after the last one of the vessel, or of one vessel
     too many.
 
 Raises

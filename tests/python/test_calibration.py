@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wakeline as wl
+from wakeline import tracking
 from wakeline.cli import main
 from wakeline.recording import TargetTruth, write_plots
 from wakeline.scenario import RadarSimulator, Truth
@@ -20,10 +21,8 @@ OFFSETS = (40.0, np.radians(2.0), 0.4)
 REPORTED = ("211000001", "211000002", "211000003", "211000004", "211000005")
 
 
-def scene(seed, offsets=OFFSETS, *, minutes=10, others=5, clutter=20.0):
-    """A recording of five reported vessels, others and clutter by a radar with offsets."""
-    rng = np.random.default_rng(seed)
-    names = [*REPORTED, *(f"other {k}" for k in range(others))]
+def fleet(rng, names):
+    """Vessels on straight courses at 1 to 5 km."""
     truths = {}
     for name in names:
         range_m, speed_mps = rng.uniform(1000.0, 5000.0), rng.uniform(5.0, 12.0)
@@ -36,6 +35,11 @@ def scene(seed, offsets=OFFSETS, *, minutes=10, others=5, clutter=20.0):
                 speed_mps * np.sin(course_rad),
             ]
         )
+    return truths
+
+
+def recorded_by(truths, rng, offsets, *, minutes=10, clutter=20.0, place=(0.0, 0.0)):
+    """The recording of a radar with offsets at a place."""
     radar = RadarSimulator(
         range_std_m=10.0,
         bearing_std_rad=np.radians(0.5),
@@ -45,13 +49,21 @@ def scene(seed, offsets=OFFSETS, *, minutes=10, others=5, clutter=20.0):
         max_range_m=9000.0,
         rotating=True,
     )
-    recording = radar.record(truths, minutes * 24, rng)
+    own = Truth([place[0], 0.0, place[1], 0.0])
+    recording = radar.record(truths, minutes * 24, rng, own=own)
     moved = [-offset for offset in offsets]
     episodes = [
         replace(one, scans=[scan.without_offsets(*moved) for scan in one.scans])
         for one in recording
     ]
     return replace(recording, episodes=episodes)
+
+
+def scene(seed, offsets=OFFSETS, *, minutes=10, others=5, clutter=20.0):
+    """A recording of five reported vessels, others and clutter by a radar with offsets."""
+    rng = np.random.default_rng(seed)
+    truths = fleet(rng, [*REPORTED, *(f"other {k}" for k in range(others))])
+    return recorded_by(truths, rng, offsets, minutes=minutes, clutter=clutter)
 
 
 def reports_of(recording, seed=0, every=4, std_m=5.0):
@@ -159,6 +171,49 @@ def test_the_joyride_radar_is_two_degrees_off():
     )
     assert after.errors.position_rmse_m < before.errors.position_rmse_m - 3.0
     assert after.errors.position_rmse_m < 19.2
+
+
+# Two radars ---------------------------------------------------------------------------------------
+
+
+OTHER_OFFSETS = (-25.0, np.radians(-1.0), 0.1)
+
+
+def two_radars(seed, place):
+    """Recordings of one fleet by a radar at the origin, and by another one at a place."""
+    rng = np.random.default_rng(seed)
+    truths = fleet(rng, [f"vessel {k}" for k in range(8)])
+    return (
+        recorded_by(truths, rng, OFFSETS),
+        recorded_by(truths, rng, OTHER_OFFSETS, place=place),
+    )
+
+
+def against(recording, other):
+    tracks = wl.track_recording(other, radar=RADAR).smooth()
+    return calibrate(recording, tracking.reports_of(tracks), radar=RADAR)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (3000.0, -2000.0)])
+def test_two_radars_are_calibrated_against_each_other(place):
+    found = against(*two_radars(5, place))
+    difference = np.subtract(OFFSETS, OTHER_OFFSETS)
+    assert (np.abs(values(found) - difference) < 4.0 * stds(found)).all()
+    assert found.range_m.determined
+    assert found.bearing_rad.determined
+    others = (found.other_range_m, found.other_bearing_rad)
+    apart = place != (0.0, 0.0)
+    assert [one.determined for one in others] == [apart, apart]
+    if apart:
+        for one, truth in zip(others, OTHER_OFFSETS, strict=False):
+            assert abs(one.value - truth) < 4.0 * one.std
+
+
+def test_either_of_two_radars_has_the_opposite_difference():
+    one, other = two_radars(6, (500.0, 500.0))
+    there, back = against(one, other), against(other, one)
+    spread = np.hypot(stds(there), stds(back))
+    assert (np.abs(values(there) + values(back)) < 3.0 * spread).all()
 
 
 # What is not determined ---------------------------------------------------------------------------

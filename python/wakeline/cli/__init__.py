@@ -28,7 +28,7 @@ _COMMANDS = {
     "track": "track a recording",
     "live": "track what radars on the network send",
     "view": "show a session or tracks in the browser",
-    "calibrate": "find the offsets of a radar from AIS or GNSS reports",
+    "calibrate": "find the offsets of a radar from AIS or GNSS reports, or another radar",
     "tune": "find the errors of a radar, process noise and detection from plots alone",
     "navigate": "own ship's solution from an NMEA 0183 log or an IMU log",
     "search": "drift of an object and a search plan, from a scenario in TOML",

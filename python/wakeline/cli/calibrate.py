@@ -1,4 +1,4 @@
-"""``wakeline calibrate``: the offsets of a radar from AIS or GNSS reports."""
+"""``wakeline calibrate``: the offsets of a radar from AIS or GNSS reports, or another radar."""
 
 from __future__ import annotations
 
@@ -12,18 +12,29 @@ from wakeline import plot
 from wakeline._brief import many
 from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
-from wakeline.tracking import calibrate, read_reports, read_settings
+from wakeline.tracking import (
+    calibrate,
+    open_recording,
+    read_reports,
+    read_settings,
+    reports_of,
+    track_recording,
+)
 from wakeline.tracking.calibrated import vessel_names
 
 from . import options, outputs, report
+
+_Units = tuple[tuple[str, str, float, str], ...]
 
 _RADAR, _PICTURE = "radar.toml", "calibration.png"
 _ABOUT = """\
 Compares the plots of vessels with their position reports (AIS, GNSS) and finds
 the constant offsets of the radar in range, bearing and time, measured minus
-true, with their standard deviations. An offset is reported if there are enough
-plots of reported vessels and its standard deviation is small; one vessel on a
-steady course, or vessels all on one bearing, are not enough.
+true, with their standard deviations. With --against they are compared with the
+tracks of another radar, and the offsets are those less the ones of that radar.
+An offset is reported if there are enough plots of reported vessels and its
+standard deviation is small; one vessel on a steady course, vessels all on one
+bearing, or all so near that their hulls hide the offset, are not enough.
 
 Writes radar.toml, radar parameters with the offsets found (wakeline track
 --radar radar.toml), and a picture of the errors before and after.
@@ -35,12 +46,14 @@ columns, separated by commas, recognized by name in any order:
   --ais      time (UTC), mmsi, latitude, longitude; optional course and speed over
              ground; or, in the plane of the recording, time_s, target, north_m,
              east_m; optional vnorth_mps, veast_mps, scenario
+  --against  as RECORDING, of the same plane and time; --against-own as --own
 """
 _UNITS = (
     ("range", "m", 1.0, "m"),
     ("bearing", "rad", 180.0 / math.pi, "°"),
     ("time", "s", 1.0, "s"),
 )
+_OTHER = (("other_range", *_UNITS[0][1:]), ("other_bearing", *_UNITS[1][1:]))
 
 
 def add_to(parser: argparse.ArgumentParser) -> None:
@@ -49,10 +62,18 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _COLUMNS
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     options.add_recording(parser)
-    parser.add_argument(
-        "--ais", type=Path, metavar="FILE", required=True, help="position reports of vessels"
+    reference = parser.add_mutually_exclusive_group(required=True)
+    reference.add_argument("--ais", type=Path, metavar="FILE", help="position reports of vessels")
+    reference.add_argument(
+        "--against", type=Path, metavar="RECORDING", help="plots of another radar"
     )
     options.add_own(parser)
+    parser.add_argument(
+        "--against-own", type=Path, metavar="SCANS.csv", help="where the other radar is"
+    )
+    parser.add_argument(
+        "--against-radar", metavar="NAME|F.toml", help="parameters of the other radar"
+    )
     options.add_origin(
         parser,
         "degrees, where north 0, east 0 of the recording is; for reports in latitude and longitude",
@@ -73,7 +94,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:
     """The input files of the command line."""
-    return options.files(arguments, "plots", "ais", "own", "config")
+    return options.files(arguments, "plots", "ais", "against", "own", "against_own", "config")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -82,13 +103,13 @@ def run(arguments: argparse.Namespace) -> None:
     outputs.check_no_input("--out", written, inputs(arguments))
     settings = read_settings(arguments.config, arguments.radar)
     recording = options.opened(arguments, settings)
-    columns = dict(arguments.columns)
-    reports = read_reports(arguments.ais, recording, origin_deg=arguments.origin, columns=columns)
+    reports = _reports(arguments, recording)
     settings = settings.knowing(recording.radar)
     found = calibrate(recording, reports, config=settings, position_std_m=arguments.position_std)
     names = vessel_names(reports)
     print(_about(recording, found))
-    print(_offset_table(found))
+    units = _UNITS if arguments.against is None else _UNITS + _OTHER
+    print(_offset_table(found, units))
     if len(found.vessel_id):
         print(f"\n{_vessel_table(found, names)}")
     outputs.make_folder(arguments.out)
@@ -103,8 +124,24 @@ def run(arguments: argparse.Namespace) -> None:
         print(outputs.HOW_TO_GET_PICTURES)
     if arguments.json is not None:
         outputs.write_json(
-            arguments.json, "calibrate", _rows(found), vessels=_vessels(found, names)
+            arguments.json, "calibrate", _rows(found, units), vessels=_vessels(found, names)
         )
+
+
+def _reports(arguments: argparse.Namespace, recording: Recording) -> list[Any]:
+    """What the plots are compared with, for each episode."""
+    columns = dict(arguments.columns)
+    if arguments.against is None:
+        return read_reports(arguments.ais, recording, origin_deg=arguments.origin, columns=columns)
+    settings = read_settings(radar=arguments.against_radar)
+    other = open_recording(
+        arguments.against,
+        arguments.against_own,
+        period_s=settings.period_s,
+        azimuth=arguments.azimuth,
+        columns=columns,
+    )
+    return reports_of(track_recording(other, config=settings.knowing(other.radar)).smooth())
 
 
 def _about(recording: Recording, found: wl.track.CalibrationResult) -> str:
@@ -116,20 +153,15 @@ def _about(recording: Recording, found: wl.track.CalibrationResult) -> str:
     return "\n".join(lines)
 
 
-def _offsets(found: wl.track.CalibrationResult) -> list[tuple[str, str, float, str, Any]]:
-    return [
-        (name, key, scale, unit, getattr(found, f"{name}_{key}"))
-        for name, key, scale, unit in _UNITS
-    ]
-
-
-def _offset_table(found: wl.track.CalibrationResult) -> str:
-    rows = [["offset", "measured minus true", "std", ""]]
-    for name, _, scale, unit, one in _offsets(found):
+def _offset_table(found: wl.track.CalibrationResult, units: _Units) -> str:
+    rows = [["offset", "measured minus reference", "std", ""]]
+    for name, key, scale, unit in units:
+        one = getattr(found, f"{name}_{key}")
         known = math.isfinite(one.value)
         value = f"{scale * one.value:+.2f} {unit}" if known and one.determined else "-"
         std = f"{scale * one.std:.2f} {unit}" if known else "-"
-        rows.append([name, value, std, "" if one.determined else f"not determined: {one.verdict}"])
+        verdict = "" if one.determined else f"not determined: {one.verdict}"
+        rows.append([name.replace("_", " "), value, std, verdict])
     return report.aligned(rows, left=1, text=(3,))
 
 
@@ -141,17 +173,18 @@ def _vessel_table(found: wl.track.CalibrationResult, names: list[str]) -> str:
     return report.aligned(rows)
 
 
-def _rows(found: wl.track.CalibrationResult) -> list[dict[str, Any]]:
+def _rows(found: wl.track.CalibrationResult, units: _Units) -> list[dict[str, Any]]:
     """One row per offset, in SI units; missing values are null."""
     return [
         {
-            "offset": f"{name}_{key}",
+            "offset": offset,
             "value": one.value if math.isfinite(one.value) else None,
             "std": one.std if math.isfinite(one.std) else None,
             "determined": one.determined,
             "verdict": one.verdict,
         }
-        for name, key, _, _, one in _offsets(found)
+        for offset in (f"{name}_{key}" for name, key, _, _ in units)
+        for one in [getattr(found, offset)]
     ]
 
 

@@ -15,7 +15,7 @@
 
 from __future__ import annotations
 
-from .calibrated import calibrate, read_reports
+from .calibrated import RadarTrack, calibrate, read_reports, reports_of
 from .encounters import (
     DangerLimits,
     DangerZone,
@@ -47,6 +47,7 @@ __all__ = [
     "DangerZone",
     "Designation",
     "Encounter",
+    "RadarTrack",
     "Settings",
     "SettingsError",
     "TrackedEpisode",
@@ -62,6 +63,7 @@ __all__ = [
     "read_designations",
     "read_reports",
     "read_settings",
+    "reports_of",
     "smooth_episode",
     "track_episode",
     "track_recording",

@@ -1,8 +1,9 @@
-"""Offsets of the radar of a recording, from position reports of vessels in it."""
+"""Offsets of the radar of a recording, from reports of vessels in it or from another radar."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,33 @@ from wakeline.recording import Recording, RecordingError, ais_csv, read_ais, tru
 from wakeline.recording.table import Table
 
 from .settings import Settings, read_settings
+from .tracked import TrackedEpisode, TrackedRecording
 
 Reports = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class RadarTrack:
+    """A track of a radar in place of the reports of its vessel.
+
+    Attributes
+    ----------
+    time_s, north_m, east_m, vnorth_mps, veast_mps : ndarray (n,)
+        By the clock of the radar.
+    covariance : ndarray (n, 2, 2)
+        Of the positions.
+    antenna_north_m, antenna_east_m : ndarray (n,)
+        Where the radar was.
+    """
+
+    time_s: np.ndarray
+    north_m: np.ndarray
+    east_m: np.ndarray
+    vnorth_mps: np.ndarray
+    veast_mps: np.ndarray
+    covariance: np.ndarray
+    antenna_north_m: np.ndarray
+    antenna_east_m: np.ndarray
 
 
 def read_reports(
@@ -69,6 +95,40 @@ def read_reports(
     return [ais.tracks] * len(recording)
 
 
+def reports_of(tracks: TrackedRecording) -> list[dict[str, RadarTrack]]:
+    """The tracks of one radar as what another one is compared with.
+
+    Smoothed tracks (``tracks.smooth()``) have no lag in turns.
+
+    Returns
+    -------
+    list of dict of str to RadarTrack
+        For each episode its tracks by number.
+
+    Examples
+    --------
+    >>> import wakeline as wl
+    >>> joyride = wl.recording.load("joyride")
+    >>> reports = wl.tracking.reports_of(wl.track_recording(joyride).smooth())
+    >>> list(reports[0])
+    ['1']
+    """
+    return [_reports_of(tracked) for tracked in tracks.episodes]
+
+
+def _reports_of(tracked: TrackedEpisode) -> dict[str, RadarTrack]:
+    tracks = tracked.tracks
+    antenna_m = tracked.episode.own.position_at(tracks.time_s)
+    found = {}
+    for name in tracks.ids():
+        rows = tracks.track_id == name
+        north_m, vnorth_mps, east_m, veast_mps = tracks.state[rows].T
+        covariance = tracks.covariance[rows][:, ::2, ::2]
+        place = (north_m, east_m, vnorth_mps, veast_mps)
+        found[name] = RadarTrack(tracks.time_s[rows], *place, covariance, *antenna_m[rows].T)
+    return found
+
+
 def calibrate(
     recording: Recording,
     reports: Reports | Sequence[Reports],
@@ -77,21 +137,22 @@ def calibrate(
     config: Settings | wl.CalibrationConfig | str | Path | None = None,
     position_std_m: float = 5.0,
 ) -> wl.track.CalibrationResult:
-    """Find the offsets of the radar of a recording from position reports (AIS, GNSS).
+    """Find the offsets of the radar of a recording from position reports, or from another radar.
 
     Parameters
     ----------
     recording : Recording
     reports : dict of str to track, or a sequence of them
-        The reports of each vessel, for all episodes or for each: objects with ``time_s``,
-        ``north_m``, ``east_m``, ``vnorth_mps``, ``veast_mps`` such as an ``AisTrack``, a
-        ``TargetTruth`` or an ``OwnShipMotion`` of :mod:`wakeline.recording`.
+        The reports of each vessel (AIS, GNSS), for all episodes or for each: objects with
+        ``time_s``, ``north_m``, ``east_m``, ``vnorth_mps``, ``veast_mps`` such as an ``AisTrack``,
+        a ``TargetTruth`` or an ``OwnShipMotion`` of :mod:`wakeline.recording`; or the tracks of
+        another radar (:func:`reports_of`), and the offsets are those less the ones of that radar.
     radar : Radar, str or Path, optional
         As for :func:`wakeline.track_recording`; its errors count, its offsets do not.
     config : Settings, CalibrationConfig, str or Path, optional
         Settings with the radar, or parameters of the calibration.
     position_std_m : float
-        Standard deviation of a report per axis.
+        Standard deviation of a report per axis; tracks have their covariances.
 
     Returns
     -------
@@ -168,33 +229,33 @@ class _Feed:
         number: Mapping[str, int],
         position_std_m: float,
     ) -> None:
-        names = ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps")
         self._calibration, self._std_m, self._next = calibration, position_std_m, 0
-        rows = [
-            np.column_stack([np.full(len(track.time_s), number[name]), *_columns(track, names)])
-            for name, track in reports.items()
-        ]
-        table = np.concatenate(rows) if rows else np.zeros((0, 6))
-        self._rows = table[np.argsort(table[:, 1], kind="stable")]
+        tables = [_columns(track, number[name]) for name, track in reports.items()]
+        names = tables[0] if tables else ()
+        joined = {"time_s": np.zeros(0)}
+        joined |= {name: np.concatenate([one[name] for one in tables]) for name in names}
+        order = np.argsort(joined["time_s"], kind="stable")
+        self._columns = {name: column[order] for name, column in joined.items()}
 
     def until(self, time_s: float) -> None:
         """Give the reports up to a time."""
-        end = int(np.searchsorted(self._rows[:, 1], time_s, side="right"))
-        for vessel, *report in self._rows[self._next : end].tolist():
-            when_s, north_m, east_m, vnorth_mps, veast_mps = report
-            self._calibration.add_reports(
-                int(vessel),
-                when_s,
-                north_m=north_m,
-                east_m=east_m,
-                vnorth_mps=vnorth_mps,
-                veast_mps=veast_mps,
-                position_std_m=self._std_m,
-            )
+        end = int(np.searchsorted(self._columns["time_s"], time_s, side="right"))
+        for k in range(self._next, end):
+            report = {name: column[k : k + 1] for name, column in self._columns.items()}
+            vessel = int(report.pop("vessel")[0])
+            self._calibration.add_reports(vessel, position_std_m=self._std_m, **report)
         self._next = max(end, self._next)
 
 
-def _columns(track: Any, names: Sequence[str]) -> list[np.ndarray]:
-    """Columns (n,) of a track, NaN where it has none."""
-    unknown = np.full(len(track.time_s), np.nan)
-    return [unknown if getattr(track, name) is None else getattr(track, name) for name in names]
+def _columns(track: Any, vessel: int) -> dict[str, np.ndarray]:
+    """Columns of a track as `add_reports` takes them, NaN where it has none."""
+    count = len(track.time_s)
+    columns = {"vessel": np.full(count, vessel), "covariance": np.zeros((count, 2, 2))}
+    for name in ("time_s", "north_m", "east_m", "vnorth_mps", "veast_mps"):
+        column = getattr(track, name)
+        columns[name] = np.full(count, np.nan) if column is None else column
+    antenna = dict.fromkeys(("antenna_north_m", "antenna_east_m"), np.full(count, np.nan))
+    if isinstance(track, RadarTrack):
+        antenna = {name: getattr(track, name) for name in antenna}
+        columns["covariance"] = track.covariance
+    return columns | antenna

@@ -47,14 +47,16 @@ struct Scene {
   double reports_late_s = 0.0;  // arrival
   double clock_s = 0.0;         // of the reports
   double vessel_offset_m = 0.0;
+  double size = 1.0;  // of ranges and speeds
 };
 
 Course some_course(Draw& draw, const Scene& scene) {
-  const double bearing = draw.uniform(-kPi<double>, kPi<double>), range = draw.uniform(1000, 6000);
+  const double bearing = draw.uniform(-kPi<double>, kPi<double>);
+  const double range = scene.size * draw.uniform(1000, 6000);
   const double course = draw.uniform(-kPi<double>, kPi<double>);
   return {
       {range * std::cos(bearing + scene.turned_rad), range * std::sin(bearing + scene.turned_rad)},
-      draw.uniform(4.0, 14.0),
+      scene.size * draw.uniform(4.0, 14.0),
       course + scene.turned_rad,
       scene.turning ? deg(0.2) * draw.normal() : 0.0};
 }
@@ -198,6 +200,16 @@ TEST(Calibration, OfVesselsOnOneBearingAtOneRangeRateHasNoRangeAndTime) {
   EXPECT_EQ(found.time_s.verdict, CalibrationVerdict::kPoorGeometry);
 }
 
+TEST(Calibration, OfTwoVesselsHasTheBearingOnlyWhereTheyAreFar) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Scene far{.reported = 2, .clutter = 0};
+    Scene near = far;
+    near.size = 0.03;
+    EXPECT_TRUE(observed(far, seed).solve().bearing_rad.determined());
+    EXPECT_EQ(observed(near, seed).solve().bearing_rad.verdict, CalibrationVerdict::kPoorGeometry);
+  }
+}
+
 TEST(Calibration, WithoutMatchesIsNotDetermined) {
   for (const CalibrationResult& found :
        {Calibration(kRadar).solve(), observed({.reported = 0}, 1).solve(),
@@ -243,6 +255,9 @@ TEST(Calibration, RejectsWhatIsNotFiniteOrGoesBack) {
   EXPECT_EQ(calibration.report({1, 10.0, 1000.0, 0.0}), Status::kNegativeTimeStep);
   EXPECT_EQ(calibration.report({2, 10.0, 1000.0, 0.0}), Status::kNotFinite) << "no room";
   EXPECT_EQ(calibration.report({1, 20.0, 1000.0, 0.0}), Status::kOk);
+  ReferenceReport skew{1, 30.0, 1000.0, 0.0};
+  skew.covariance << 1.0, 2.0, 2.0, 1.0;
+  EXPECT_EQ(calibration.report(skew), Status::kNotFinite) << "no covariance";
   calibration.plots(std::vector<Plot>{{15.0, nan, 0.0, {}},
                                       {15.0, -1.0, 0.0, {}},
                                       {nan, 1e3, 0.0, {}},
@@ -250,6 +265,100 @@ TEST(Calibration, RejectsWhatIsNotFiniteOrGoesBack) {
                                       {15.0, 1010.0, 0.01, {}}});
   EXPECT_EQ(calibration.solve().pairs.size(), 1u);
   EXPECT_THROW(Calibration(kRadar, {.max_gap_s = -1.0}), std::invalid_argument);
+}
+
+/// Offsets of range, bearing and time of one radar.
+struct Errors {
+  double range_m, bearing_rad, time_s;
+};
+
+constexpr Errors kThis{40.0, deg(2.0), 0.4}, kOther{-25.0, deg(-1.0), 0.1};
+
+/// A radar at the origin and the tracks of another one, of eight vessels that both see.
+CalibrationResult against_another(const Vec<double, 2>& antenna_m, std::uint64_t seed) {
+  Draw draw(seed);
+  Calibration calibration(kRadar);
+  std::vector<Course> courses;
+  for (int k = 0; k < 8; ++k) courses.push_back(some_course(draw, {}));
+  for (double begin_s = 0.0; begin_s < 600.0; begin_s += kPeriod_s) {
+    std::vector<Plot> plots;
+    for (std::size_t k = 0; k < courses.size(); ++k) {
+      const double tracked_s = begin_s + 0.1 * static_cast<double>(k);
+      const Vec<double, 2> d = courses[k].place(tracked_s) - antenna_m;
+      const double range_m = d.norm() + kOther.range_m + 4.0 * draw.normal();
+      const double bearing_rad =
+          std::atan2(d[1], d[0]) + kOther.bearing_rad + deg(0.2) * draw.normal();
+      const Vec<double, 2> u{std::cos(bearing_rad), std::sin(bearing_rad)}, across{-u[1], u[0]};
+      const Vec<double, 2> seen = antenna_m + range_m * u;
+      const Vec<double, 2> way = courses[k].velocity(tracked_s) + 0.2 * draw.normals<2>();
+      const double across_m = deg(0.2) * range_m;
+      ReferenceReport report{static_cast<std::int64_t>(k),
+                             tracked_s + kOther.time_s,
+                             seen[0],
+                             seen[1],
+                             way[0],
+                             way[1]};
+      report.covariance =
+          16.0 * u * u.transpose() + across_m * across_m * across * across.transpose();
+      report.antenna_m = antenna_m;
+      EXPECT_EQ(calibration.report(report), Status::kOk);
+      const double time_s = begin_s + draw.uniform(0.0, kPeriod_s);
+      const Vec<double, 2> place = courses[k].place(time_s);
+      plots.push_back(
+          {time_s + kThis.time_s,
+           place.norm() + kThis.range_m + 10.0 * draw.normal(),
+           std::atan2(place[1], place[0]) + kThis.bearing_rad + deg(0.5) * draw.normal(),
+           {}});
+    }
+    std::sort(plots.begin(), plots.end(),
+              [](const Plot& a, const Plot& b) { return a.time_s < b.time_s; });
+    calibration.plots(plots);
+  }
+  return calibration.solve();
+}
+
+TEST(Calibration, AgainstAnotherRadarAtTheSamePlaceFindsTheDifferences) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const CalibrationResult found = against_another({0.0, 0.0}, seed);
+    expect_within_four_std(found.range_m, kThis.range_m - kOther.range_m);
+    expect_within_four_std(found.bearing_rad, kThis.bearing_rad - kOther.bearing_rad);
+    expect_within_four_std(found.time_s, kThis.time_s - kOther.time_s);
+    EXPECT_EQ(found.other_range_m.verdict, CalibrationVerdict::kPoorGeometry);
+    EXPECT_EQ(found.other_bearing_rad.verdict, CalibrationVerdict::kPoorGeometry);
+  }
+}
+
+TEST(Calibration, AgainstARadarElsewhereFindsTheOffsetsOfBoth) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const CalibrationResult found = against_another({3000.0, -2000.0}, seed);
+    expect_within_four_std(found.range_m, kThis.range_m - kOther.range_m);
+    expect_within_four_std(found.bearing_rad, kThis.bearing_rad - kOther.bearing_rad);
+    expect_within_four_std(found.time_s, kThis.time_s - kOther.time_s);
+    expect_within_four_std(found.other_range_m, kOther.range_m);
+    expect_within_four_std(found.other_bearing_rad, kOther.bearing_rad);
+  }
+}
+
+TEST(Calibration, OfManyPairsOfRadarsHasTheErrorThatItReports) {
+  Vec<double, 5> squares = Vec<double, 5>::Zero();
+  constexpr int kScenes = 20;
+  for (int seed = 0; seed < kScenes; ++seed) {
+    const CalibrationResult found =
+        against_another({-1500.0, 3500.0}, 200 + static_cast<std::uint64_t>(seed));
+    const auto off = [](const CalibratedOffset& one, double truth) {
+      return (one.value - truth) / one.std;
+    };
+    const Vec<double, 5> error{off(found.range_m, kThis.range_m - kOther.range_m),
+                               off(found.bearing_rad, kThis.bearing_rad - kOther.bearing_rad),
+                               off(found.time_s, kThis.time_s - kOther.time_s),
+                               off(found.other_range_m, kOther.range_m),
+                               off(found.other_bearing_rad, kOther.bearing_rad)};
+    squares += error.cwiseAbs2() / kScenes;
+  }
+  for (const double square : squares) {
+    EXPECT_GT(square, 0.1);
+    EXPECT_LT(square, 2.0);
+  }
 }
 
 TEST(Radar, OffsetsAreSubtractedFromPlots) {

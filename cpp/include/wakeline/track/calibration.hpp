@@ -71,7 +71,8 @@ struct CalibrationConfig {
   void validate() const { validate_fields(*this); }
 };
 
-/// A reported position of a vessel (AIS, GNSS) that plots are compared with.
+/// A position of a vessel that plots are compared with: reported by it (AIS, GNSS), or that of its
+/// track by another radar.
 struct ReferenceReport {
   std::int64_t vessel = 0;  ///< such as its MMSI
   double time_s = 0.0;
@@ -80,6 +81,26 @@ struct ReferenceReport {
   double vnorth_mps = std::numeric_limits<double>::quiet_NaN();  ///< NaN where unknown
   double veast_mps = std::numeric_limits<double>::quiet_NaN();
   double position_std_m = 5.0;  ///< per axis, of the part that varies from report to report
+  /// Of [north, east] by a track, in place of `position_std_m`; zero: that.
+  Mat<double, 2, 2> covariance = Mat<double, 2, 2>::Zero();
+  /// [north, east] of the antenna of the other radar, whose offsets are unknown; NaN: none, the
+  /// position is right but for its errors.
+  Vec<double, 2> antenna_m = Vec<double, 2>::Constant(std::numeric_limits<double>::quiet_NaN());
+
+  [[nodiscard]] bool is_of_radar() const noexcept { return antenna_m.allFinite(); }
+
+  [[nodiscard]] Mat<double, 2, 2> errors_m2() const noexcept {
+    if (!covariance.isZero(0.0)) return covariance;
+    return position_std_m * position_std_m * Mat<double, 2, 2>::Identity();
+  }
+
+  [[nodiscard]] bool is_valid() const noexcept {
+    return std::isfinite(time_s) && in_range(north_m) && in_range(east_m) &&
+           position_std_m >= 0.0 && in_range(position_std_m) && is_finite(covariance) &&
+           covariance.diagonal().minCoeff() >= 0.0 &&
+           covariance(0, 0) * covariance(1, 1) >= covariance(0, 1) * covariance(1, 0) &&
+           (is_of_radar() ? in_range(antenna_m) : antenna_m.array().isNaN().any());
+  }
 };
 
 /// Why an offset is determined or not.
@@ -97,7 +118,7 @@ constexpr std::array<Word<CalibrationVerdict>, 3> words_of(CalibrationVerdict) n
 
 /// One offset of the radar.
 struct CalibratedOffset {
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< measured minus true
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< measured minus reference
   double std = std::numeric_limits<double>::infinity();
   CalibrationVerdict verdict = CalibrationVerdict::kFewMatches;
 
@@ -130,6 +151,8 @@ struct CalibrationMatch {
 /// Result of a calibration.
 struct CalibrationResult {
   CalibratedOffset range_m, bearing_rad, time_s;
+  /// Of the other radar, measured minus true, where the reference is tracks of one.
+  CalibratedOffset other_range_m, other_bearing_rad;
   Mat<double, 3, 3> covariance = Mat<double, 3, 3>::Zero();  ///< of range, bearing and time
   double matches = 0.0;                                      ///< plots of reported vessels
   double range_scale = 1.0;  ///< errors found over those expected (`Radar`, reports)
@@ -149,7 +172,7 @@ struct CalibrationResult {
 };
 
 /// Range, bearing and time offset of a radar, from its plots of vessels whose positions are known
-/// by their reports (AIS, GNSS).
+/// by their reports (AIS, GNSS), or by the tracks of another radar.
 ///
 /// A plot of a vessel at its reported position, interpolated to the time of the plot, differs from
 /// it by
@@ -166,7 +189,19 @@ struct CalibrationResult {
 /// its size and its correlation from plot to plot are estimated from the residuals, so that the
 /// standard deviations of the offsets hold for echoes that wander about the hull.
 /// A third of the radar's `extent_std_m` is taken for an error of each vessel that never averages
-/// out.
+/// out; with fewer than three vessels `position_offset_std_m` as well, for an echo on the near side
+/// of a hull turns with the aspect. So vessels near the antenna do not determine the bearing.
+///
+/// A track of another radar has the offsets of that radar, o_r in range and o_a in bearing, as N(0,
+/// gate²). The offsets found are then those of this radar less those of the other one, which show
+/// in
+///
+///     range:     (1 - cos g) o_r + r_o sin g o_a
+///     bearing:   -sin g / r o_r + (1 - r_o / r cos g) o_a
+///
+/// where r_o is the range from the other antenna and g the angle by which its line of sight is
+/// clockwise of that of this one. Radars at one place do not show them; where radars are apart,
+/// `other_range_m` and `other_bearing_rad` are found too, if the geometry allows.
 ///
 /// Which plots are the vessels' is unknown: all in a wide gate are candidates. The offsets with the
 /// most plots of the most vessels are found first, by votes on a grid; then the equations are
@@ -191,9 +226,7 @@ class Calibration {
   /// Takes a report. `kNotFinite` for one without a finite time or position, or of one vessel too
   /// many; `kNegativeTimeStep` for one that is not after the last one of the vessel.
   Status report(const ReferenceReport& report) {
-    if (!std::isfinite(report.time_s) || !in_range(report.north_m) || !in_range(report.east_m) ||
-        !(report.position_std_m >= 0.0 && in_range(report.position_std_m)))
-      return Status::kNotFinite;
+    if (!report.is_valid()) return Status::kNotFinite;
     const auto known = slot_of_.find(report.vessel);
     if (known == slot_of_.end()) {
       if (std::ssize(vessels_) == config_.max_vessels) return Status::kNotFinite;
@@ -227,8 +260,10 @@ class Calibration {
   [[nodiscard]] const CalibrationConfig& config() const noexcept { return config_; }
 
  private:
-  using Offsets = Vec<double, 3>;  // range, bearing, time
-  using Pair = Vec<double, 2>;     // range, bearing; or along, across
+  static constexpr int kOffsets = 5;  // range, bearing, time; range, bearing of the other radar
+  using Offsets = Vec<double, kOffsets>;
+  using Covariance = Mat<double, kOffsets, kOffsets>;
+  using Pair = Vec<double, 2>;  // range, bearing; or along, across
 
   static constexpr int kRangeBins = 40, kBearingBins = 32;
   static constexpr double kGate = 11.0;           // d² at which a plot is as likely another's
@@ -277,23 +312,28 @@ class Calibration {
     int vessel;
     double time_s;
     double range_m, bearing_rad;
-    Pair residual;  // measured minus reported
-    Pair rate;      // of range and bearing
-    Pair sight;     // towards the vessel, along and across its course
-    Pair variance;  // of the residuals
+    Pair residual;            // measured minus reported
+    Pair rate;                // of range and bearing
+    Mat<double, 2, 2> other;  // how the offsets of another radar show
+    Pair sight;               // towards the vessel, along and across its course
+    Pair variance;            // of the residuals
 
     /// What the offsets of radar and vessel leave of the residual.
     [[nodiscard]] Pair rest(const Offsets& radar, const Pair& vessel_m) const noexcept {
-      return residual - Pair{radar[0] - rate[0] * radar[2] + sight.dot(vessel_m),
-                             radar[1] - rate[1] * radar[2] + cross().dot(vessel_m)};
+      return residual - Pair{row(0).dot(radar) + sight.dot(vessel_m),
+                             row(1).dot(radar) + cross().dot(vessel_m)};
+    }
+    /// The derivative of the residual of range (0) or bearing (1) by the offsets of the radar.
+    [[nodiscard]] Offsets row(int k) const noexcept {
+      return Offsets{k == 0 ? 1.0 : 0.0, k == 0 ? 0.0 : 1.0, -rate[k], other(k, 0), other(k, 1)};
     }
     [[nodiscard]] Pair cross() const noexcept { return Pair{-sight[1], sight[0]} / range_m; }
   };
 
   /// Normal equations of a vessel.
   struct Normal {
-    Mat<double, 3, 3> radar = Mat<double, 3, 3>::Zero();
-    Mat<double, 3, 2> both = Mat<double, 3, 2>::Zero();
+    Covariance radar = Covariance::Zero();
+    Mat<double, kOffsets, 2> both = Mat<double, kOffsets, 2>::Zero();
     Mat<double, 2, 2> vessel = Mat<double, 2, 2>::Zero();
     Offsets radar_side = Offsets::Zero();
     Pair vessel_side = Pair::Zero();
@@ -310,7 +350,7 @@ class Calibration {
   /// What `solve` improves from step to step.
   struct Solution {
     Offsets offsets = Offsets::Zero();
-    Mat<double, 3, 3> covariance = Mat<double, 3, 3>::Zero();
+    Covariance covariance = Covariance::Zero();
     std::vector<Pair> vessel_m;   // offset of each vessel
     std::vector<double> matches;  // plots of each vessel
     std::vector<double> weight;   // of each candidate
@@ -352,6 +392,18 @@ class Calibration {
 
 // Pairs of plot and vessel ------------------------------------------------------------------------
 
+/// How the offsets of another radar, in range and bearing, show in the residuals of range and
+/// bearing: what it sees at `from_other` is at `from_this` of this radar.
+inline Mat<double, 2, 2> shown_offsets(const Vec<double, 2>& from_other,
+                                       const Vec<double, 2>& from_this) noexcept {
+  const double other_m = from_other.norm(), range_m = from_this.norm();
+  const Vec<double, 2> u = from_this / range_m, v = from_other / std::max(other_m, 1.0);
+  const double along = u.dot(v), aside = u[0] * v[1] - u[1] * v[0];
+  Mat<double, 2, 2> shown;
+  shown << 1.0 - along, other_m * aside, -aside / range_m, 1.0 - other_m / range_m * along;
+  return shown;
+}
+
 inline void Calibration::match(int slot, const Plot& plot) noexcept {
   const Vessel& vessel = vessels_[static_cast<std::size_t>(slot)];
   if (!vessel.covers(plot.time_s)) return;
@@ -381,10 +433,11 @@ inline void Calibration::match(int slot, const Plot& plot) noexcept {
   // The chord of an arc of that bend is off by bend u (1 - u) T² / 2; a cubic by less.
   const double arc_m = 0.5 * vessel.bend_mps2 * u * (1.0 - u) * step_s * step_s;
   const double way_m = vessel.smooth ? 0.25 * arc_m : arc_m;
-  const double report_m2 = (1.0 - u) * (1.0 - u) * a.position_std_m * a.position_std_m +
-                           u * u * b.position_std_m * b.position_std_m;
-  const double place_m2 = report_m2 + way_m * way_m + radar_.extent_std_m * radar_.extent_std_m +
-                          plot.own.position_std_m * plot.own.position_std_m;
+  const double even_m2 = way_m * way_m + radar_.extent_std_m * radar_.extent_std_m +
+                         plot.own.position_std_m * plot.own.position_std_m;
+  const Mat<double, 2, 2> place_m2 = (1.0 - u) * (1.0 - u) * a.errors_m2() + u * u * b.errors_m2() +
+                                     even_m2 * Mat<double, 2, 2>::Identity();
+  const Pair aside{-towards[1], towards[0]};
   keep({.vessel = slot,
         .time_s = plot.time_s,
         .range_m = range_m,
@@ -392,11 +445,13 @@ inline void Calibration::match(int slot, const Plot& plot) noexcept {
         .residual = residual,
         .rate = {towards.dot(relative),
                  (towards[0] * relative[1] - towards[1] * relative[0]) / range_m},
+        .other = b.is_of_radar() ? shown_offsets(place - b.antenna_m, d)
+                                 : Mat<double, 2, 2>(Mat<double, 2, 2>::Zero()),
         .sight = {towards.dot(course), course[0] * towards[1] - course[1] * towards[0]},
-        .variance = {radar_.range_std_m * radar_.range_std_m + place_m2,
+        .variance = {radar_.range_std_m * radar_.range_std_m + towards.dot(place_m2 * towards),
                      radar_.bearing_std_rad * radar_.bearing_std_rad +
                          plot.own.heading_std_rad * plot.own.heading_std_rad +
-                         place_m2 / (range_m * range_m)}});
+                         aside.dot(place_m2 * aside) / (range_m * range_m)}});
 }
 
 inline void Calibration::keep(const Candidate& candidate) noexcept {
@@ -442,8 +497,10 @@ inline Calibration::Offsets Calibration::voted() const {
   }
   Eigen::Index i = 0, j = 0;
   votes.maxCoeff(&i, &j);
-  return {(static_cast<double>(i) + 0.5) * range_step - config_.range_gate_m,
-          (static_cast<double>(j) + 0.5) * bearing_step - config_.bearing_gate_rad, 0.0};
+  Offsets offsets = Offsets::Zero();
+  offsets[0] = (static_cast<double>(i) + 0.5) * range_step - config_.range_gate_m;
+  offsets[1] = (static_cast<double>(j) + 0.5) * bearing_step - config_.bearing_gate_rad;
+  return offsets;
 }
 
 /// The probability of each candidate to be the vessel's; `slack` adds to the variances.
@@ -471,12 +528,12 @@ inline void Calibration::balance(Solution& s) const {
     Normal& n = normal[static_cast<std::size_t>(c.vessel)];
     const Pair weight =
         s.weight[k] / s.correlation * c.variance.cwiseProduct(s.scale).cwiseInverse();
-    n.add({1.0, 0.0, -c.rate[0]}, c.sight, c.residual[0], weight[0]);
-    n.add({0.0, 1.0, -c.rate[1]}, c.cross(), c.residual[1], weight[1]);
+    n.add(c.row(0), c.sight, c.residual[0], weight[0]);
+    n.add(c.row(1), c.cross(), c.residual[1], weight[1]);
   }
   // Without any geometry the offsets of the radar have a wide prior, so that they remain finite.
-  const Offsets unknown{1e6, kPi<double>, 1e4};
-  Mat<double, 3, 3> information = unknown.cwiseAbs2().cwiseInverse().asDiagonal();
+  const Offsets unknown{1e6, kPi<double>, 1e4, config_.range_gate_m, config_.bearing_gate_rad};
+  Covariance information = unknown.cwiseAbs2().cwiseInverse().asDiagonal();
   Offsets side = Offsets::Zero();
   const Mat<double, 2, 2> prior = Mat<double, 2, 2>::Identity() / s.vessel_variance_m2;
   std::vector<Mat<double, 2, 2>> own(normal.size());
@@ -487,18 +544,18 @@ inline void Calibration::balance(Solution& s) const {
     side += normal[v].radar_side - normal[v].both * own[v] * normal[v].vessel_side;
   }
   const Offsets size = information.diagonal().cwiseSqrt();  // metres, radians, seconds
-  const Mat<double, 3, 3> even =
+  const Covariance even =
       size.cwiseInverse().asDiagonal() * information * size.cwiseInverse().asDiagonal();
-  const Cholesky<3> factor(even);
+  const Cholesky<kOffsets> factor(even);
   if (!factor.ok()) return;
-  const Mat<double, 3, 3> inverse = factor.solve(Mat<double, 3, 3>(Mat<double, 3, 3>::Identity()));
+  const Covariance inverse = factor.solve(Covariance(Covariance::Identity()));
   s.covariance = size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal();
   s.offsets = s.covariance * side;
   double vessels = 0.0, squares = 0.0;
   for (std::size_t v = 0; v < normal.size(); ++v) {
     s.vessel_m[v] = own[v] * (normal[v].vessel_side - normal[v].both.transpose() * s.offsets);
     if (s.matches[v] < kFewestOfVessel) continue;
-    const Mat<double, 2, 3> lever = own[v] * normal[v].both.transpose();
+    const Mat<double, 2, kOffsets> lever = own[v] * normal[v].both.transpose();
     vessels += 1.0;
     squares += s.vessel_m[v].squaredNorm() + own[v].trace() +
                (lever * s.covariance * lever.transpose()).trace();
@@ -534,9 +591,10 @@ inline void Calibration::spread(Solution& s) const {
   if (count < 10.0 || !(products[0] > 0.0)) return;
   s.scale = (squares / count).cwiseMax(0.01).cwiseMin(25.0);
   s.correlation = 1.0;  // the sum of the correlations, up to the first that is none
+  const double shows = std::min(0.05, 2.0 / std::sqrt(2.0 * count));
   for (int lag = 1; lag <= kLags; ++lag) {
     const double correlation = products[static_cast<std::size_t>(lag)] / products[0];
-    if (correlation < 0.05) break;
+    if (correlation < shows) break;
     s.correlation += 2.0 * correlation;
   }
 }
@@ -552,7 +610,7 @@ inline double Calibration::by_chance(const Solution& s) const noexcept {
 }
 
 /// Adds what never averages out: an echo is on the near side of a hull, and on one end more than on
-/// the other.
+/// the other; of few vessels no spread shows how far.
 inline void Calibration::widen(Solution& s) const {
   double vessels = 0.0, information = 0.0, leverage = 0.0;
   for (const double matches : s.matches) vessels += matches >= kFewestOfVessel ? 1.0 : 0.0;
@@ -562,7 +620,9 @@ inline void Calibration::widen(Solution& s) const {
     leverage += weight / candidates_[k].range_m;
   }
   const double lasting_m = kLasting * radar_.extent_std_m;
-  const double variance_m2 = lasting_m * lasting_m / std::max(vessels, 1.0);
+  const double unknown_m = vessels > kFewVessels ? 0.0 : config_.position_offset_std_m;
+  const double variance_m2 =
+      (lasting_m * lasting_m + unknown_m * unknown_m) / std::max(vessels, 1.0);
   s.covariance(0, 0) += variance_m2;
   s.covariance(1, 1) += variance_m2 * leverage * leverage / (information * information);
 }
@@ -606,7 +666,7 @@ inline CalibrationResult Calibration::solve() const {
                             c.residual[0], c.residual[1], rest[0], rest[1], s.weight[k]});
   }
   if (!s.solved) return result;
-  result.covariance = s.covariance;
+  result.covariance = s.covariance.topLeftCorner<3, 3>();
   result.range_scale = std::sqrt(s.scale[0]);
   result.bearing_scale = std::sqrt(s.scale[1]);
   result.correlation_scans = s.correlation;
@@ -626,6 +686,8 @@ inline CalibrationResult Calibration::solve() const {
   result.range_m = offset(0, config_.max_range_std_m);
   result.bearing_rad = offset(1, config_.max_bearing_std_rad);
   result.time_s = offset(2, config_.max_time_std_s);
+  result.other_range_m = offset(3, config_.max_range_std_m);
+  result.other_bearing_rad = offset(4, config_.max_bearing_std_rad);
   return result;
 }
 
