@@ -159,7 +159,7 @@ def test_a_signal_k_server_is_subscribed_to_and_connected_again(taken):
 
 
 def test_spokes_of_a_radar_server_are_the_sweeps_that_it_shows():
-    """The server is ours: its capabilities come first, its spokes are those of its sweeps."""
+    """The server is ours, and knows its spokes only after the first sweep."""
     harbor, seen = Harbor(), []
     with WebServer(harbor, port=0) as server:
         url = f"signalk://127.0.0.1:{server.app.port}/radars/A?name=spokes"
@@ -168,6 +168,7 @@ def test_spokes_of_a_radar_server_are_the_sweeps_that_it_shows():
         service = Service(session)
         thread = threading.Thread(target=service.run)
         thread.start()
+        until(lambda: "no spokes yet" in service.inputs[0].connection)
         end_s = time.monotonic() + 10.0
         while len(seen) < 2 and time.monotonic() < end_s:
             harbor.sweep()

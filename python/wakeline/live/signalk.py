@@ -15,6 +15,7 @@ HOW_TO_GET = "Signal K needs aiohttp: pip install 'wakeline[live]'"
 _MMSI = re.compile(r"mmsi:(\d{9})$")
 _OWN = ("vessels.self", "self", "")
 _LONGEST = 4 << 20
+_PER_TURN = "spokesPerRevolution"
 _WANTED = {
     "context": "*",
     "subscribe": [{"path": "*", "period": 200, "policy": "instant"}],
@@ -158,7 +159,10 @@ def receive(
             if radar:
                 async with client.get(f"{radar_url}/capabilities") as answer:
                     answer.raise_for_status()
-                    take(json.dumps(await answer.json()).encode())
+                    capabilities = await answer.json()
+                    if isinstance(capabilities, dict) and not capabilities.get(_PER_TURN):
+                        raise OSError("the radar has no spokes yet")
+                    take(json.dumps(capabilities).encode())
             async with client.ws_connect(
                 stream_url, heartbeat=20.0, max_msg_size=_LONGEST
             ) as stream:
@@ -180,7 +184,7 @@ def receive(
     async def in_words() -> bool:
         try:
             return await work()
-        except (aiohttp.ClientError, asyncio.TimeoutError) as error:
+        except (aiohttp.ClientError, asyncio.TimeoutError, ValueError) as error:
             raise OSError(str(error) or type(error).__name__) from None
 
     return asyncio.run(in_words())
