@@ -115,7 +115,8 @@ AnyTracker make_tracker(const Radars& radars, const TrackerConfig& config,
 /// The arguments of an equal one.
 Arguments tracker_arguments(const AnyTracker& any);
 
-/// The tracks at a time.
-PyTracks tracks_of(const AnyTracker& any, const std::optional<double>& time_s, bool tentative);
+/// The tracks at a time; not `predicted`, each at that of its last update.
+PyTracks tracks_of(const AnyTracker& any, const std::optional<double>& time_s, bool tentative,
+                   bool predicted);
 
 }  // namespace wakeline::python

@@ -91,18 +91,19 @@ ValueError
       .def(
           "tracks",
           [](PyLateWindow& window, const std::optional<double>& time_s, bool tentative,
-             bool correct) {
+             bool predicted, bool correct) {
             const auto hold = window.lock();
             if (correct) (void)window.correct();
-            return tracks_of(window, time_s, tentative);
+            return tracks_of(window, time_s, tentative, predicted);
           },
-          py::arg("time_s") = py::none(), py::arg("tentative") = false, py::arg("correct") = true,
+          py::arg("time_s") = py::none(), py::arg("tentative") = false, py::arg("predicted") = true,
+          py::arg("correct") = true,
           R"(The tracks, as `Tracker.tracks` gives them.
 
 Parameters
 ----------
 time_s : float, optional
-tentative : bool
+tentative, predicted : bool
 correct : bool
     Whether all late data are put in first, at the cost of up to a window of data processed again;
     False: the picture as it is, at no cost.

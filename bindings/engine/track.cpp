@@ -303,10 +303,10 @@ const Bounds& bounds_of(const Track& track) {
 
 template <class Estimator, class Steps>
 PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<double>& time_s,
-                bool tentative) {
+                bool tentative, bool predicted) {
   using T = Track;
   const std::vector<Track> wanted = tracks_at<Track>(
-      tracker, time_s || !tracker.started() ? time_s : tracker.time_s(),
+      tracker, time_s || !tracker.started() || !predicted ? time_s : tracker.time_s(),
       [&](const Track& track) { return !track.hushed && (tentative || track.active()); });
   const auto numbers = [&](const auto& value) { return column_of<double>(wanted, value); };
   const auto counts = [&](const auto& value) { return column_of<std::int64_t>(wanted, value); };
@@ -354,8 +354,10 @@ PyTracks tracks(const Tracker<Estimator, Steps>& tracker, const std::optional<do
 
 }  // namespace
 
-PyTracks tracks_of(const AnyTracker& any, const std::optional<double>& time_s, bool tentative) {
-  return any.visit([&](const auto& tracker) { return tracks(tracker, time_s, tentative); });
+PyTracks tracks_of(const AnyTracker& any, const std::optional<double>& time_s, bool tentative,
+                   bool predicted) {
+  return any.visit(
+      [&](const auto& tracker) { return tracks(tracker, time_s, tentative, predicted); });
 }
 
 void define_track(py::module_& parent) {
@@ -764,6 +766,7 @@ Raises
 ValueError
     When there is no radar of that number.)")
       .def("tracks", &tracks_of, py::arg("time_s") = py::none(), py::arg("tentative") = false,
+           py::arg("predicted") = true,
            R"(The confirmed and coasting tracks (with `tentative` all), at one time.
 
 Parameters
@@ -774,6 +777,8 @@ time_s : float, optional
     was later. NaN where it is so far ahead that a prediction fails.
 tentative : bool
     Whether tentative and held tracks are included.
+predicted : bool
+    Whether tracks are predicted to the default time; False: each as of its last update.
 
 Returns
 -------

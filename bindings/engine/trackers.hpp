@@ -47,8 +47,8 @@ inline void require_in_range(const char* name, double value) {
   require(in_range(value), name, "finite and at most 1e9 in magnitude", value);
 }
 
-/// Copies of the tracks for which `is_wanted` holds, older ones first: each as it is, or at
-/// `time_s`.
+/// Copies of the tracks for which `is_wanted` holds, older ones first: at `time_s`, or each at the
+/// time of its estimate.
 template <class Track, class Tracker, class IsWanted>
 std::vector<Track> tracks_at(const Tracker& tracker, const std::optional<double>& time_s,
                              const IsWanted& is_wanted) {
@@ -57,9 +57,8 @@ std::vector<Track> tracks_at(const Tracker& tracker, const std::optional<double>
   tracker.for_each([&](const Track& track) {
     if (!is_wanted(track)) return;
     Track& copy = tracks.emplace_back(track);
-    if (!time_s) return;
-    copy.kinematics = tracker.kinematics_at(track, *time_s);
-    copy.time_s = *time_s;
+    copy.time_s = time_s.value_or(track.time_s);
+    copy.kinematics = tracker.kinematics_at(track, copy.time_s);
   });
   return tracks;
 }

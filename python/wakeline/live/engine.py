@@ -212,8 +212,11 @@ class TrackEngine:
         return self._tracker.tracks(time_s=time_s, correct=False)
 
     def updated(self) -> tuple[wl.track.TrackTable, np.ndarray, list[int]]:
-        """The shown tracks, rows updated or corrected since the last call, and numbers gone."""
-        table = self.table()
+        """The shown tracks, each as of its last update, and what the last call had not.
+
+        These are the rows that were updated or corrected, and the numbers that are gone.
+        """
+        table = self._tracker.tracks(predicted=False, correct=False)
         ids = np.array(table.track_id)
         update = np.column_stack([table.nis, table.hits, table.misses, table.existence])
         known_ids, known = self._known

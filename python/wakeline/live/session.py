@@ -581,26 +581,30 @@ class Session:
         """Tracks of a table, or of some of its rows, as JSON lines."""
         which = slice(None) if rows is None else rows
         mean, covariance = table.mean[which], table.covariance[which]
+        time_s = table.time_s[which]
         if not len(mean):
             return []
-        own = self.own.at(float(table.time_s[which][0]))
+        own = self.own.at(float(time_s.max()))
         columns: dict[str, np.ndarray] = {}
         if self.plane is not None:
             columns["place_deg"] = np.degrees(self.plane.place(mean[:, [0, 2]])).T
         if isinstance(own, Pose):
-            columns |= self._relative(own, mean, covariance)
+            columns |= self._relative(own, time_s, mean, covariance)
         return table.json_lines(rows, radar=radar, modes=MODE_NAMES, **columns)
 
     def _relative(
-        self, own: Pose, mean: np.ndarray, covariance: np.ndarray
+        self, own: Pose, time_s: np.ndarray, mean: np.ndarray, covariance: np.ndarray
     ) -> dict[str, np.ndarray]:
-        """Range, bearing and closest approach to own ship, of states (k, 4)."""
-        north_m, east_m = mean[:, 0] - own.north_m, mean[:, 2] - own.east_m
+        """Range, bearing and closest approach to own ship, of states (k, 4) at their times."""
+        moves = math.isfinite(own.vnorth_mps)
+        state = np.tile([own.north_m, own.vnorth_mps, own.east_m, own.veast_mps], (len(mean), 1))
+        if moves:
+            state[:, 0::2] += (time_s - own.time_s)[:, np.newaxis] * state[:, 1::2]
+        north_m, east_m = (mean - state)[:, 0::2].T
         bearing_rad = np.arctan2(east_m, north_m) % (2.0 * np.pi)
         columns = {"direction": np.column_stack([np.hypot(north_m, east_m), bearing_rad])}
-        if not math.isfinite(own.vnorth_mps):
+        if not moves:
             return columns
-        state = np.array([own.north_m, own.vnorth_mps, own.east_m, own.veast_mps])
         own_covariance = np.diag([0.0, own.velocity_std_mps**2] * 2)
         approach = wl.navigation.closest_approach(state, mean, own_covariance, covariance)
         limits = self.config.settings.danger_limits
