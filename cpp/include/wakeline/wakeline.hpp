@@ -146,6 +146,7 @@
 #include "wakeline/track/existence.hpp"
 #include "wakeline/track/identities.hpp"
 #include "wakeline/track/initiation.hpp"
+#include "wakeline/track/innovation_consistency.hpp"
 #include "wakeline/track/input_log.hpp"
 #include "wakeline/track/late_window.hpp"
 #include "wakeline/track/life_cycle.hpp"
