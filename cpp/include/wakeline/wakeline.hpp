@@ -199,6 +199,7 @@
 #include "wakeline/wire/asterix_feed.hpp"
 #include "wakeline/wire/asterix_items.hpp"
 #include "wakeline/wire/asterix_reader.hpp"
+#include "wakeline/wire/json_track.hpp"
 #include "wakeline/wire/nmea.hpp"
 #include "wakeline/wire/reported_track.hpp"
 #include "wakeline/wire/sensor_clock.hpp"
