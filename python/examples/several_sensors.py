@@ -56,7 +56,8 @@ print(f"{window.late_inputs} late, {window.too_late_inputs} too late")
 for k, (north_m, _, east_m, _) in enumerate(tracks.mean):
     name = tracks.identity[k] or tracks.name[k]
     print(f"track {tracks.track_id[k]} at {north_m:8.1f} N {east_m:8.1f} E  {name}")
-    axes.annotate(f"{tracks.track_id[k]} {name}", (east_m / 1e3, north_m / 1e3))
+    label, place_km = f"{tracks.track_id[k]} {name}", (east_m / 1e3, north_m / 1e3)
+    axes.annotate(label, place_km, (5.0, 6.0), textcoords="offset points", fontsize=8)
 for site in SITES:
     axes.plot(site.east_m / 1e3, site.north_m / 1e3, color=wl.plot.INK, marker="^")
 wl.plot.save(wl.plot.dress_map(axes).figure, "several_sensors.png")

@@ -8,10 +8,11 @@ import wakeline as wl
 recording = wl.recording.load("joyride")
 tuned = wl.tune(recording, radar=wl.Radar())
 
-print("setting                   given     found       +-")
+print("setting                   given     found       +-  determined")
 for found in tuned.parameters:
-    verdict = "" if found.determined else "  not determined"
-    print(f"{found.name:22} {found.before:8.3f}  {found.value:8.3f}  {found.std:7.3f}{verdict}")
+    determined = "yes" if found.determined else "no"
+    figures = f"{found.before:8.3f}  {found.value:8.3f}  {found.std:7.3f}"
+    print(f"{found.name:22} {figures}  {determined:>10}")
 
 print("\nsettings     coverage  position m  velocity m/s")
 for name, settings in (("default", {"radar": wl.Radar()}), ("tuned", {"config": tuned.settings})):
