@@ -183,6 +183,12 @@ class AnyPlotExtractor {
     return open;
   }
 
+  [[nodiscard]] double open_extent_rad() {
+    double extent_rad = 0.0;
+    if_running([&](auto& extractor) { extent_rad = extractor.open_extent_rad(); });
+    return extent_rad;
+  }
+
   [[nodiscard]] StaticClutterMap clutter() {
     const auto hold = lock_.hold();
     StaticClutterMap map = clutter_;
@@ -586,6 +592,9 @@ VideoPlots
                              "Sweeps and echoes so far, as ExtractionCounts.")
       .def_property_readonly("open_echoes", &AnyPlotExtractor::open_echoes,
                              "Number of open echoes.")
+      .def_property_readonly("open_extent_rad", &AnyPlotExtractor::open_extent_rad,
+                             "Angle that the beam has swept since the first of the open echoes "
+                             "began: plots that are still to come are in it or ahead of it.")
       .def_property_readonly("clutter", &AnyPlotExtractor::clutter,
                              "A copy of what the extractor has learned of static clutter.");
 }

@@ -20,6 +20,7 @@ from wakeline.live.lines import LineAssembly
 from wakeline.live.nmea import AisMessage, NmeaDecoder
 from wakeline.live.own_ship import Missing, OwnShipSources, SourceKey
 from wakeline.live.problems import Problems
+from wakeline.live.video_feed import Sweeps, VideoFeed
 from wakeline.tracking.settings import SettingsError
 from wakeline.wire import SensorClock
 
@@ -696,6 +697,37 @@ def test_spokes_are_sweeps(azimuth):
     for cut in range(len(message)):
         session.feed(5.0, "spokes", message[:cut])
     assert set(session.status()["inputs"]["spokes"]["problems"]) == {"spokes"}
+
+
+@pytest.mark.parametrize("together", [1, 8, 50])
+def test_plots_of_video_come_before_the_beam_has_passed_their_sector(together):
+    """Echoes of 1 to 5 degrees: sectors end where the first one that is not whole begins."""
+    rng = np.random.default_rng(together)
+    sweeps, width_rad = 1024, math.tau / 1024
+    feed = VideoFeed()
+    passed_rad, lags_rad, plots = None, [], 0
+    echoes = [(int(k), int(rng.integers(3, 15)), int(c)) for k, c in rng.integers(20, 230, (40, 2))]
+    for turn in range(4):
+        cells = rng.rayleigh(10.0, (sweeps, 256)).clip(0, 255).astype(np.uint8)
+        for k, (_, count, cell) in enumerate(echoes):
+            cells[k * sweeps // 40 : k * sweeps // 40 + count, cell : cell + 4] = 250
+        for first in range(0, sweeps, together):
+            number = np.arange(first, min(first + together, sweeps))
+            azimuth_rad = (number + 0.5) * width_rad
+            time_s = 1e6 + 2.5 * (turn + (number + 0.5) / sweeps)
+            part = Sweeps(azimuth_rad, time_s, width_rad, 0.0, 10.0, cells[number])
+            for one in feed.take(part):
+                if hasattr(one, "range_m"):
+                    plots += 1
+                    if passed_rad is not None:
+                        assert (one.bearing_rad - passed_rad) % math.tau < math.pi
+                else:
+                    passed_rad = one.to_rad
+                    beam_rad = azimuth_rad[-1] + 0.5 * width_rad
+                    lags_rad.append((beam_rad - passed_rad + 1e-9) % math.tau)
+    assert plots > 100
+    assert np.median(lags_rad) < 0.03
+    assert max(lags_rad) <= 0.1 + 1e-6
 
 
 def test_the_status_says_how_far_the_clock_of_a_radar_server_is_off():

@@ -248,6 +248,16 @@ def test_turns_follow_without_a_seam():
     assert len(extractor.finish()) == 1
 
 
+def test_what_is_still_to_come_is_where_the_first_open_echo_begins():
+    picture = np.zeros((360, 50), np.uint8)
+    picture[100:112, 20:24] = picture[105:108, 30:34] = 200
+    extractor, width_rad = every_cell(gap_sweeps=0), 2.0 * np.pi / 360
+    for k in range(120):
+        extractor.process(video(picture[k : k + 1], first=k, sweeps_a_turn=360))
+        expected = k - 99 if 100 <= k < 112 else 0
+        assert extractor.open_extent_rad == pytest.approx(expected * width_rad)
+
+
 # Sweeps that do not come as they should ----------------------------------------------------------
 
 

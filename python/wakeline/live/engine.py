@@ -17,6 +17,8 @@ from wakeline.tracking.settings import Settings
 
 _SILENT_TURNS = 2.5  # a sector that is a little late still comes before the miss
 _SCANS = 2.5  # as large as a scan may be, of which the window has room for the plots
+_SECTORS = 160  # of a turn, for which the window has room
+_LEAST_INPUTS = 4000
 _MOST_WATCHED = 2000  # plots whose NIS is kept
 _WINDOW_S = 10.0  # of late data, at least: what clocks of sensors may be off, both ways
 
@@ -106,7 +108,13 @@ class TrackEngine:
         self.radars = list(radars)
         window_s = window_s or max(_WINDOW_S, 2.0 * max(one.period_s for one in radars))
         plots = int(_SCANS * settings.tracker["max_plots"])
-        self._tracker = settings.window_of(self.radars, window_s=window_s, max_plots=plots)
+        inputs = int(sum(_SECTORS * window_s / one.period_s for one in radars))
+        self._tracker = settings.window_of(
+            self.radars,
+            window_s=window_s,
+            max_inputs=max(inputs, _LEAST_INPUTS),
+            max_plots=plots,
+        )
         self._heard: set[int] = set()  # radars that have given a sector
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0

@@ -38,7 +38,7 @@ of the last cell, and cells (n, C) of uint8."""
 CLOCK = "clock"
 _CONNECTION = " from "  # between the names of an input that listens and of a peer
 _MOST_CONNECTIONS = 64
-_PUBLISH_S = 0.03, 1e-4  # between reports of tracks: least, and for each track
+_PUBLISH_S = 0.015, 1e-4  # between reports of tracks: least, and for each track
 _WIDE_RAD = 1.0  # a sector after which they are reported at once
 _WATCH_S = 0.5, 4e-3  # between looks for alarms: least, and for each track
 _PASS_S = 0.02  # between looks at what happens by time alone

@@ -23,8 +23,8 @@ _BATCH = 32  # messages decoded together
 _WAIT_S = 0.01  # unless the first of them is older
 _LATE = 64  # messages; a count that goes back further has restarted
 _SEQUENCES = 1 << 32
-_BEHIND_RAD = 0.1  # of the beam: echoes up to this width have ended
-_SECTOR_RAD = _TAU / 64
+_BEHIND_RAD = 0.1  # of the beam, at most: where echoes that have not ended begin
+_SECTOR_RAD = _TAU / 128
 _TRIAL_RAD = _TAU  # of video that settings are estimated from
 _MOST_TRIAL = 256 << 20  # octets
 _LEAST_STEP_S = 1e-4  # between the ends of sectors
@@ -66,8 +66,8 @@ class VideoFeed:
     """Plots of the echoes in the video of one radar, and the sectors that the beam has passed.
 
     Messages are decoded 32 at a time, or after 10 ms. Settings of detection are estimated from the
-    first revolution, which gives no plots. A sector ends 0.1 rad behind the beam, because an echo
-    is a plot only when the beam has left it.
+    first revolution, which gives no plots. A sector ends where the first echo that the beam
+    has not left begins, which is a plot only later, and at most 0.1 rad behind the beam.
 
     Attributes
     ----------
@@ -243,13 +243,14 @@ class VideoFeed:
         first_rad = float(sweeps.azimuth_rad[0])
         if math.isnan(self._edge_rad):
             self._edge_rad = (first_rad - 0.5 * sweeps.width_rad) % _TAU
-        passed_rad = (last_rad + 0.5 * sweeps.width_rad - _BEHIND_RAD - self._edge_rad) % _TAU
+        behind_rad = min(self._extractor.open_extent_rad, _BEHIND_RAD)
+        passed_rad = (last_rad + 0.5 * sweeps.width_rad - behind_rad - self._edge_rad) % _TAU
         if passed_rad > math.pi or passed_rad < _SECTOR_RAD:
             return
         rate = _rate_rad_s(sweeps)
         time_s = float(sweeps.time_s[-1])
         if rate > 0.0:
-            time_s -= _BEHIND_RAD / rate
+            time_s -= behind_rad / rate
         if 0.0 <= self._edge_s - time_s < _JITTER_S:
             time_s = self._edge_s + _LEAST_STEP_S
         self._edge_s = time_s

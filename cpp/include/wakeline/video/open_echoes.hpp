@@ -56,6 +56,16 @@ class OpenEchoes {
   [[nodiscard]] std::size_t capacity() const noexcept { return echoes_.size(); }
   [[nodiscard]] std::size_t open() const noexcept { return echoes_.size() - free_.size(); }
 
+  /// How many sweeps there have been since the first of the open echoes began, with that one; 0
+  /// when there is none.
+  [[nodiscard]] std::int64_t open_sweeps() const noexcept {
+    std::int64_t most = 0;
+    for (const Runs& sweep : recent_)
+      for (const LabelledRun& run : sweep)
+        most = std::max(most, count_ - echoes_[static_cast<std::size_t>(run.label)].first_sweep);
+    return most;
+  }
+
   /// Starts a sweep; `first` is true for one that follows missing sweeps.
   void begin_sweep(const BeamPlace& beam, bool first) noexcept {
     beam_ = beam;

@@ -167,6 +167,12 @@ class PlotExtractor {
   /// Number of echoes that are not complete.
   [[nodiscard]] std::size_t open_echoes() const noexcept { return echoes_.open(); }
 
+  /// Angle that the beam has swept since the first of these echoes began: plots that are still to
+  /// come are in it or ahead of it. 0 when there is none.
+  [[nodiscard]] double open_extent_rad() const noexcept {
+    return static_cast<double>(echoes_.open_sweeps()) * width_rad_;
+  }
+
   /// Processes a sweep; returns the plots of the echoes completed by it, valid until the next call.
   std::span<const VideoPlot> process(const Sweep<Amplitude>& sweep) noexcept {
     plots_.clear();
