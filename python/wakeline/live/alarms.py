@@ -41,6 +41,7 @@ _DANGER = (
     *("first", "second", "cpa_m", "tcpa_s", "probability"),
     *("first_at_cpa_m", "second_at_cpa_m"),
 )
+_PAIR_S = 6e-6  # between looks at close passings, times the square of the number of vessels
 _MOST_ENDED = 200
 _MOST_TARGET_ALARMS = 50
 
@@ -215,7 +216,8 @@ class Alarms:
     danger_zones : sequence of wakeline.DangerZone
         Areas with separate limits of a close passing.
     max_vessels : int
-        As many vessels are watched for close passings.
+        As many vessels are watched for close passings: at each update, of more than some 300 at
+        longer intervals, 6 s for 1000.
     """
 
     def __init__(
@@ -235,6 +237,7 @@ class Alarms:
         self._danger_zones, self._max_vessels = list(danger_zones), max_vessels
         self._watch = wl.EncounterWatch(self._limits, self._danger_zones, max_vessels)
         self._dangers = self._watch.encounters
+        self._paired_s = -math.inf
         self._active: dict[int, Alarm] = {}
         self._ended: deque[Alarm] = deque(maxlen=_MOST_ENDED)
         self._next_id = 1
@@ -260,6 +263,7 @@ class Alarms:
             self._end(alarm, "new limits")
         self._encounters.clear()
         self._dangers = self._watch.encounters
+        self._paired_s = -math.inf
 
     # What has happened ----------------------------------------------------------------------------
 
@@ -321,7 +325,9 @@ class Alarms:
         for crossing in self.zones.update(time_s, track_id, places, std_m, place):
             self._pass_crossing(crossing)
         self._pass_occupants()
-        self._pass_encounters(track_id, mean, covariance, own, own_covariance)
+        if not time_s - self._paired_s < _PAIR_S * len(track_id) ** 2:
+            self._paired_s = time_s
+            self._pass_encounters(track_id, mean, covariance, own, own_covariance)
         self._pass_sensors([Sensor(*one) for one in sensors])
         self._pass_disagreements([Disagreement(*one) for one in disagreements])
         return self.changes()

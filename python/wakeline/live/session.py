@@ -40,7 +40,7 @@ _CONNECTION = " from "  # between the names of an input that listens and of a pe
 _MOST_CONNECTIONS = 64
 _PUBLISH_S = 0.015, 1e-4  # between reports of tracks: least, and for each track
 _WIDE_RAD = 1.0  # a sector after which they are reported at once
-_WATCH_S = 0.5, 4e-3  # between looks for alarms: least, and for each track
+_WATCH_S = 0.5  # between looks for alarms
 _PASS_S = 0.02  # between looks at what happens by time alone
 _DISAGREE = ("identity_disagrees", "identity_jumps", "identity_shared")
 _DISAGREE_S = 60.0  # a disagreement that is not stated again is over
@@ -516,9 +516,7 @@ class Session:
             if self.listeners:
                 for line in lines():
                     self._tell("track", json_lines.track_values(line))
-        least_s, each_s = _WATCH_S
-        since_s = self.tracker.time_s - self._watched_s
-        if since_s >= max(least_s, each_s * len(self.shown)):
+        if self.tracker.time_s - self._watched_s >= _WATCH_S:
             self._watched_s = self.tracker.time_s
             events = [
                 event
