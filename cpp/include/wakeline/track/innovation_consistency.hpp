@@ -34,6 +34,7 @@ class InnovationConsistency {
     ++plots_;
   }
 
+  /// How many there have been.
   [[nodiscard]] int plots() const noexcept { return plots_; }
 
   /// NaN before the first plot.

@@ -21,25 +21,28 @@ namespace wakeline {
 
 /// A track as it is written; texts are UTF-8.
 struct JsonTrack {
+  /// Where it is.
   struct Place {
     double latitude_deg, longitude_deg;
   };
+  /// Where it is seen from own ship.
   struct Direction {
-    double range_m, bearing_rad;  ///< from own ship
+    double range_m, bearing_rad;
   };
+  /// The closest approach to own ship.
   struct Approach {
-    double cpa_m, tcpa_s;  ///< to own ship
-    double probability;    ///< of a distance below the limit
+    double cpa_m, tcpa_s;
+    double probability;  ///< of a distance below the limit
   };
 
   std::int64_t id = 0;
-  std::string_view status, name, mode = {};
+  std::string_view status = {}, name = {}, mode = {};
   double time_s = 0.0;          ///< of the estimate
   Gaussian<4> kinematics = {};  ///< `[x, vx, y, vy]`
-  std::span<const double> mode_probability;
+  std::span<const double> mode_probability = {};
   double existence = 0.0;
   std::int64_t hits = 0, misses = 0;
-  std::string_view identity;  ///< of the vessel that reports; empty without one
+  std::string_view identity = {};  ///< of the vessel that reports; empty without one
   double identity_probability = 0.0, identity_time_s = NAN;
   double mean_nis = NAN, mean_nis_lower = NAN, mean_nis_upper = NAN;
   double whiteness = NAN, whiteness_bound = NAN;
