@@ -341,6 +341,24 @@ def test_the_command_writes_a_radar_that_track_takes(files, tmp_path, capsys):
     assert main([*track, "--out", str(tmp_path / "tracks"), "--print-config"]) == 0
 
 
+def test_the_command_compares_two_radars(tmp_path, capsys):
+    recordings = two_radars(5, (0.0, 0.0))
+    for name, recording in zip("ab", recordings, strict=True):
+        write_plots(tmp_path / f"{name}.csv", recording)
+    (tmp_path / "radar.toml").write_text(
+        "range_std_m = 10.0\nbearing_std_deg = 0.5\nperiod_s = 2.5\n"
+    )
+    command = ["calibrate", str(tmp_path / "a.csv"), "--against", str(tmp_path / "b.csv")]
+    radars = ["--radar", str(tmp_path / "radar.toml"), "--against-radar", tmp_path / "radar.toml"]
+    results = ["--out", tmp_path / "out", "--json", tmp_path / "found.json"]
+    assert main([*command, *map(str, radars), *map(str, results)]) == 0
+    assert "other bearing" in capsys.readouterr().out
+    rows = {row["offset"]: row for row in json.loads((tmp_path / "found.json").read_text())["rows"]}
+    difference = OFFSETS[1] - OTHER_OFFSETS[1]
+    assert rows["bearing_rad"]["value"] == pytest.approx(difference, abs=np.radians(0.1))
+    assert not rows["other_bearing_rad"]["determined"]
+
+
 def test_reports_in_latitude_and_longitude_need_the_origin(files, tmp_path, recorded, capsys):
     command = ["calibrate", str(files / "plots.csv"), "--ais", str(files / "ais.csv")]
     assert main([*command, "--out", str(tmp_path)]) == 2
