@@ -19,7 +19,9 @@ def test_two_radars_are_better_than_the_better_one(report):
 
 
 def test_reports_make_positions_better_and_name_the_vessels(report):
-    radar, both = (report.row("ais", name) for name in ("radar", "both"))
+    radar, both, in_place = (report.row("ais", name) for name in ("radar", "both", "in_place"))
+    assert in_place["position_m"] <= 0.55 * radar["position_m"]
+    assert in_place["velocity_mps"] <= 0.95 * both["velocity_mps"]
     assert both["position_m"] <= 0.8 * radar["position_m"]
     assert both["velocity_mps"] <= radar["velocity_mps"]
     assert both["identity_right"] >= 0.99

@@ -48,6 +48,7 @@ __all__ = [
     "load",
     "load_ais",
     "load_imu",
+    "load_lidar",
     "load_navigation",
     "load_radar",
     "names",
@@ -108,6 +109,18 @@ def load_ais() -> AisRecording:
     """
     with resources.as_file(_data() / "solent") as folder:
         return read_ais(folder / "ais.csv")
+
+
+def load_lidar() -> Recording:
+    """The lidar of the bundled recording "autoferry": its points in the same five scenarios.
+
+    The scenarios, own ship and truth are those of ``load("autoferry")``.
+    """
+    with resources.as_file(_data() / "autoferry") as folder:
+        plots, scans, truth = (
+            folder / f"{kind}.csv" for kind in ("lidar_plots", "lidar_scans", "truth")
+        )
+        return read_plots(plots, scans, truth, name="autoferry lidar")
 
 
 def load_navigation(*, variation_deg: float | None = None) -> NavigationLog:

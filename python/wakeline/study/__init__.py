@@ -20,6 +20,7 @@ from . import (
     fusion,
     fuzzy_alpha_beta,
     imm,
+    lidar,
     search,
     solent,
     usv_navigation,
@@ -40,6 +41,7 @@ __all__ = [
     "fusion",
     "fuzzy_alpha_beta",
     "imm",
+    "lidar",
     "load",
     "names",
     "search",
@@ -63,6 +65,7 @@ _STUDIES = {
         association,
         consistency,
         fusion,
+        lidar,
     )
 }
 

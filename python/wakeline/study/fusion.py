@@ -2,7 +2,8 @@
 
 - ``two_radars``: 40 vessels in the view of two radars of other errors, periods and places; by the
   ``fine`` one alone, the ``coarse`` one alone, and ``both``.
-- ``ais``: 40 vessels that report every 10 s, 1 to 20 s late; by the ``radar`` alone and ``both``.
+- ``ais``: 40 vessels that report every 10 s, 1 to 20 s late; by the ``radar`` alone, ``both`` as
+  they come, and both with a window of late data, ``in_place``.
 - ``wrong_ais``: 60 vessels of which 40 report, six of them wrongly: 2 NM off, a position that
   stands, at 0/0, an identity that two use, one that moves to another vessel, and a drift.
 
@@ -199,26 +200,27 @@ def _wrong_ais(rng: np.random.Generator) -> Scene:
 
 SCENES = {
     "two_radars": (_two_radars, {"fine": {0}, "coarse": {1}, "both": {0, 1}}),
-    "ais": (_ais, {"radar": {0}, "both": {0, 2}}),
+    "ais": (_ais, {"radar": {0}, "both": {0, 2}, "in_place": {0, 2}}),
     "wrong_ais": (_wrong_ais, {"radar": {0}, "both": {0, 2}}),
 }
+WINDOW_S = {"in_place": 20.0}
 
 
 # Figures ------------------------------------------------------------------------------------------
 
 
-def _tracker(sensors: set[int]) -> tuple[wl.Tracker, dict[int, int]]:
+def _tracker(sensors: set[int], window_s: float) -> tuple[wl.Tracker, dict[int, int]]:
     """A tracker with the radars among some sensors, and their numbers in it."""
-    radars = {0: FINE, 1: COARSE}
-    used = sorted(sensors & set(radars))
-    return wl.Tracker([radar_of(radars[k]) for k in used]), {
-        k: number for number, k in enumerate(used)
-    }
+    simulators = {0: FINE, 1: COARSE}
+    used = sorted(sensors & set(simulators))
+    radars = [radar_of(simulators[k]) for k in used]
+    tracker = wl.LateWindow(radars, window_s=window_s) if window_s else wl.Tracker(radars)
+    return tracker, {k: number for number, k in enumerate(used)}
 
 
-def follow(scene: Scene, sensors: set[int]) -> dict[str, float]:
-    """The figures of a tracker that is given some of the sensors."""
-    tracker, number = _tracker(sensors)
+def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, float]:
+    """The figures of a tracker that is given some of the sensors, late data in a window."""
+    tracker, number = _tracker(sensors, window_s)
     calls = sorted((call for call in scene.calls if call[1] in sensors), key=lambda call: call[0])
     states = np.arange(SETTLED_S, DURATION_S - STEP_S, STEP_S)
     sums = dict.fromkeys(("position", "velocity", "matched", "gospa", "right", "twice"), 0.0)
@@ -265,7 +267,10 @@ def follow(scene: Scene, sensors: set[int]) -> dict[str, float]:
 def _run(name: str, seed: int) -> dict[str, dict[str, float]]:
     make, estimators = SCENES[name]
     scene = make(np.random.default_rng([seed, *map(ord, name)]))
-    return {estimator: follow(scene, sensors) for estimator, sensors in estimators.items()}
+    return {
+        estimator: follow(scene, sensors, WINDOW_S.get(estimator, 0.0))
+        for estimator, sensors in estimators.items()
+    }
 
 
 def _plan(request: Request) -> Plan:
@@ -312,7 +317,7 @@ def _pictures(rows: Rows) -> Iterator[Picture]:
 
 def _bars(ax: Axes, rows: Rows, metric: str, label: str) -> Axes:
     names = [f"{row['scenario']}\n{row['estimator']}".replace("_", " ") for row in rows]
-    colors = [plot.PALETTE[0 if row["estimator"] == "both" else 1] for row in rows]
+    colors = [plot.PALETTE[0 if row["estimator"] in ("both", "in_place") else 1] for row in rows]
     ax.bar(np.arange(len(rows)), [row[metric] for row in rows], 0.6, color=colors)
     ax.set_xticks(np.arange(len(rows)), names)
     ax.set_ylabel(label)
