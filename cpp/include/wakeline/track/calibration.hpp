@@ -171,6 +171,18 @@ struct CalibrationResult {
   }
 };
 
+/// How the offsets of another radar, in range and bearing, show in the residuals of range and
+/// bearing: what it sees at `from_other` is at `from_this` of this radar.
+inline Mat<double, 2, 2> shown_offsets(const Vec<double, 2>& from_other,
+                                       const Vec<double, 2>& from_this) noexcept {
+  const double other_m = from_other.norm(), range_m = from_this.norm();
+  const Vec<double, 2> u = from_this / range_m, v = from_other / std::max(other_m, 1.0);
+  const double along = u.dot(v), aside = u[0] * v[1] - u[1] * v[0];
+  Mat<double, 2, 2> shown;
+  shown << 1.0 - along, other_m * aside, -aside / range_m, 1.0 - other_m / range_m * along;
+  return shown;
+}
+
 /// Range, bearing and time offset of a radar, from its plots of vessels whose positions are known
 /// by their reports (AIS, GNSS), or by the tracks of another radar.
 ///
@@ -314,7 +326,8 @@ class Calibration {
     double range_m, bearing_rad;
     Pair residual;            // measured minus reported
     Pair rate;                // of range and bearing
-    Mat<double, 2, 2> other;  // how the offsets of another radar show
+    Pair from_other;          // from the antenna of another radar, as it sees it; 0: reported
+    Mat<double, 2, 2> other;  // how the offsets of that radar show
     Pair sight;               // towards the vessel, along and across its course
     Pair variance;            // of the residuals
 
@@ -328,6 +341,21 @@ class Calibration {
       return Offsets{k == 0 ? 1.0 : 0.0, k == 0 ? 0.0 : 1.0, -rate[k], other(k, 0), other(k, 1)};
     }
     [[nodiscard]] Pair cross() const noexcept { return Pair{-sight[1], sight[0]} / range_m; }
+
+    /// The same with equations that are linear about these offsets of the other radar.
+    [[nodiscard]] Candidate about(const Offsets& radar) const noexcept {
+      const Pair off = radar.tail<2>();
+      const double seen_m = from_other.norm(), c = std::cos(off[1]), s = std::sin(off[1]);
+      const Pair from = (1.0 - off[0] / seen_m) * Pair{c * from_other[0] + s * from_other[1],
+                                                       c * from_other[1] - s * from_other[0]};
+      const Pair d =
+          range_m * Pair{std::cos(bearing_rad), std::sin(bearing_rad)} - from_other + from;
+      Candidate moved = *this;
+      moved.other = shown_offsets(from, d);
+      moved.residual -= Pair{d.norm() - range_m, wrap_angle(std::atan2(d[1], d[0]) - bearing_rad)} +
+                        off - moved.other * off;
+      return moved;
+    }
   };
 
   /// Normal equations of a vessel.
@@ -351,6 +379,7 @@ class Calibration {
   struct Solution {
     Offsets offsets = Offsets::Zero();
     Covariance covariance = Covariance::Zero();
+    std::vector<Candidate> candidates;
     std::vector<Pair> vessel_m;   // offset of each vessel
     std::vector<double> matches;  // plots of each vessel
     std::vector<double> weight;   // of each candidate
@@ -391,18 +420,6 @@ class Calibration {
 };
 
 // Pairs of plot and vessel ------------------------------------------------------------------------
-
-/// How the offsets of another radar, in range and bearing, show in the residuals of range and
-/// bearing: what it sees at `from_other` is at `from_this` of this radar.
-inline Mat<double, 2, 2> shown_offsets(const Vec<double, 2>& from_other,
-                                       const Vec<double, 2>& from_this) noexcept {
-  const double other_m = from_other.norm(), range_m = from_this.norm();
-  const Vec<double, 2> u = from_this / range_m, v = from_other / std::max(other_m, 1.0);
-  const double along = u.dot(v), aside = u[0] * v[1] - u[1] * v[0];
-  Mat<double, 2, 2> shown;
-  shown << 1.0 - along, other_m * aside, -aside / range_m, 1.0 - other_m / range_m * along;
-  return shown;
-}
 
 inline void Calibration::match(int slot, const Plot& plot) noexcept {
   const Vessel& vessel = vessels_[static_cast<std::size_t>(slot)];
@@ -445,8 +462,8 @@ inline void Calibration::match(int slot, const Plot& plot) noexcept {
         .residual = residual,
         .rate = {towards.dot(relative),
                  (towards[0] * relative[1] - towards[1] * relative[0]) / range_m},
-        .other = b.is_of_radar() ? shown_offsets(place - b.antenna_m, d)
-                                 : Mat<double, 2, 2>(Mat<double, 2, 2>::Zero()),
+        .from_other = b.is_of_radar() ? Pair(place - b.antenna_m) : Pair(0.0, 0.0),
+        .other = Mat<double, 2, 2>::Zero(),
         .sight = {towards.dot(course), course[0] * towards[1] - course[1] * towards[0]},
         .variance = {radar_.range_std_m * radar_.range_std_m + towards.dot(place_m2 * towards),
                      radar_.bearing_std_rad * radar_.bearing_std_rad +
@@ -507,8 +524,8 @@ inline Calibration::Offsets Calibration::voted() const {
 inline void Calibration::weigh(Solution& s, const Pair& slack) const {
   s.total = 0.0;
   std::fill(s.matches.begin(), s.matches.end(), 0.0);
-  for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    const Candidate& c = candidates_[k];
+  for (std::size_t k = 0; k < s.candidates.size(); ++k) {
+    const Candidate& c = s.candidates[k];
     const auto vessel = static_cast<std::size_t>(c.vessel);
     const Pair rest = c.rest(s.offsets, s.vessel_m[vessel]);
     const Pair variance = c.variance.cwiseProduct(s.scale) + slack;
@@ -522,9 +539,9 @@ inline void Calibration::weigh(Solution& s, const Pair& slack) const {
 /// Weighted least squares for the offsets of radar and vessels, and the variance of the latter.
 inline void Calibration::balance(Solution& s) const {
   std::vector<Normal> normal(vessels_.size());
-  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+  for (std::size_t k = 0; k < s.candidates.size(); ++k) {
     if (s.weight[k] < 1e-6) continue;
-    const Candidate& c = candidates_[k];
+    const Candidate& c = s.candidates[k];
     Normal& n = normal[static_cast<std::size_t>(c.vessel)];
     const Pair weight =
         s.weight[k] / s.correlation * c.variance.cwiseProduct(s.scale).cwiseInverse();
@@ -574,8 +591,8 @@ inline void Calibration::spread(Solution& s) const {
   std::array<double, kLags + 1> products{};
   std::vector<std::array<Pair, kLags>> past(vessels_.size());
   std::vector<int> known(vessels_.size(), 0);
-  for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    const Candidate& c = candidates_[k];
+  for (std::size_t k = 0; k < s.candidates.size(); ++k) {
+    const Candidate& c = s.candidates[k];
     const auto v = static_cast<std::size_t>(c.vessel);
     const Pair rest = c.rest(s.offsets, s.vessel_m[v]);
     squares += s.weight[k] * rest.cwiseAbs2().cwiseQuotient(c.variance);
@@ -603,7 +620,7 @@ inline void Calibration::spread(Solution& s) const {
 inline double Calibration::by_chance(const Solution& s) const noexcept {
   const double gate = 4.0 * config_.range_gate_m * config_.bearing_gate_rad;
   double share = 0.0;
-  for (const Candidate& c : candidates_)
+  for (const Candidate& c : s.candidates)
     share += std::min(
         1.0, kPi<double> * kGate * std::sqrt(c.variance.cwiseProduct(s.scale).prod()) / gate);
   return share;
@@ -614,10 +631,10 @@ inline double Calibration::by_chance(const Solution& s) const noexcept {
 inline void Calibration::widen(Solution& s) const {
   double vessels = 0.0, information = 0.0, leverage = 0.0;
   for (const double matches : s.matches) vessels += matches >= kFewestOfVessel ? 1.0 : 0.0;
-  for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    const double weight = s.weight[k] / candidates_[k].variance[1];
+  for (std::size_t k = 0; k < s.candidates.size(); ++k) {
+    const double weight = s.weight[k] / s.candidates[k].variance[1];
     information += weight;
-    leverage += weight / candidates_[k].range_m;
+    leverage += weight / s.candidates[k].range_m;
   }
   const double lasting_m = kLasting * radar_.extent_std_m;
   const double unknown_m = vessels > kFewVessels ? 0.0 : config_.position_offset_std_m;
@@ -630,14 +647,17 @@ inline void Calibration::widen(Solution& s) const {
 inline Calibration::Solution Calibration::solution() const {
   Solution s;
   s.offsets = voted();
+  s.candidates = candidates_;
   s.vessel_m.assign(vessels_.size(), Pair::Zero());
   s.matches.assign(vessels_.size(), 0.0);
-  s.weight.assign(candidates_.size(), 0.0);
+  s.weight.assign(s.candidates.size(), 0.0);
   s.vessel_variance_m2 = config_.position_offset_std_m * config_.position_offset_std_m;
   const Pair bin{2.0 * config_.range_gate_m / kRangeBins,
                  2.0 * config_.bearing_gate_rad / kBearingBins};
   double width = 1.0;  // of the slack, in bins
   for (int step = 0; step < 60; ++step, width *= 0.7) {
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (!candidates_[k].from_other.isZero(0.0)) s.candidates[k] = candidates_[k].about(s.offsets);
     weigh(s, width > 0.01 ? Pair(width * width * bin.cwiseAbs2()) : Pair::Zero());
     if (s.total < kFewestOfVessel) break;
     const Offsets before = s.offsets;
@@ -661,7 +681,7 @@ inline CalibrationResult Calibration::solve() const {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const Candidate& c = candidates_[k];
     const auto v = static_cast<std::size_t>(c.vessel);
-    const Pair rest = c.rest(s.offsets, s.vessel_m[v]);
+    const Pair rest = s.candidates[k].rest(s.offsets, s.vessel_m[v]);
     result.pairs.push_back({vessels_[v].last.vessel, c.time_s, c.range_m, c.bearing_rad,
                             c.residual[0], c.residual[1], rest[0], rest[1], s.weight[k]});
   }
