@@ -16,6 +16,7 @@ const BLINK_MS = 500;
 const FRAME_MS = 40;
 const SYMBOLS_MS = [90, 1000]; // between drawings of the symbols: least and most
 const STEP_PX = 0.5; // that they move in between
+const SOFTWARE_MS = 400; // between pictures of the server, where the processor draws
 const TRAIL_MINUTES = [1, 3, 6, 15, 30];
 const VECTOR_MINUTES = [1, 3, 6, 12, 30];
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 10, 20, 50];
@@ -67,6 +68,7 @@ const echoes = new Echoes(byId("echoes"), settings.gl);
 const overlay = new Overlay(byId("overlay"), echoes.isSoftware);
 let selected = null;
 let dirty = true;
+let fresh = false; // a picture that is not drawn yet
 let panelDue = true;
 let fitted = false;
 let connected = false;
@@ -96,7 +98,7 @@ const link = new Link({
     }
     if (!fitted) fit();
     if (selected !== null && !store.tracks.has(selected)) select(null);
-    changed();
+    fresh = true;
   },
   onEchoes: (buffer) => {
     echoes.take(buffer, settings.gain, store.now(performance.now()), placeOf(own()));
@@ -593,19 +595,21 @@ function frame(now_ms) {
   if (now_ms - drawn_ms < FRAME_MS || document.hidden) return;
   const blinks = Math.floor(now_ms / BLINK_MS) % 2 === 1;
   const moves = connected && !(store.replay?.paused) && now_ms - symbols_ms > pauseOfSymbols();
-  const symbols = dirty || moves || blinks !== blink || due || panelDue;
-  if (!symbols && !(settings.show.echoes && echoes.changed)) return;
+  const news = fresh && now_ms - symbols_ms > (overlay.isSoftware ? SOFTWARE_MS : 0);
+  const symbols = dirty || moves || news || (blinks !== blink && overlay.flashes);
+  const table = due || panelDue;
+  if (!symbols && !table && !(settings.show.echoes && echoes.changed)) return;
   const began = performance.now();
   drawn_ms = now_ms;
-  dirty = false;
-  blink = blinks;
   const time_s = store.now(now_ms);
   const here = store.ownAt(time_s);
   view.follow(here);
   const palette = PALETTES[settings.palette];
   if (settings.show.echoes) echoes.draw(view, settings, palette, time_s, placeOf(here));
   else echoes.blank(palette);
-  if (symbols) drawSymbols(now_ms, time_s, here, palette, due);
+  const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink: blinks, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed, covered };
+  if (symbols) drawSymbols(scene);
+  if (table) drawTable(scene);
   const took_ms = performance.now() - began;
   spent.frames += 1;
   spent.total_ms += took_ms;
@@ -620,21 +624,23 @@ function pauseOfSymbols() {
 }
 
 /** All but the echoes: these change with every frame, the rest slowly. */
-function drawSymbols(now_ms, time_s, here, palette, due) {
-  symbols_ms = now_ms;
-  const scene = { view, store, settings, palette, own: here, time_s, now_ms, selected, blink, sketch: tools.sketch, measures: tools.measures, cursor: tools.cursor, keyed: tools.keyed, covered };
+function drawSymbols(scene) {
+  symbols_ms = scene.now_ms;
+  dirty = fresh = false;
+  blink = scene.blink;
   overlay.draw(scene);
   placeCard();
-  showCursor(here);
+  showCursor(scene.own);
   setText(byId("range"), `${rangeName(view.range_m, settings.units)}`);
-  if (due || panelDue) {
-    panel_ms = now_ms;
-    panelDue = false;
-    panel.draw(scene);
-    fillCard();
-    showReplay();
-    sound(now_ms);
-  }
+}
+
+function drawTable(scene) {
+  panel_ms = scene.now_ms;
+  panelDue = false;
+  panel.draw(scene);
+  fillCard();
+  showReplay();
+  sound(scene.now_ms);
 }
 
 tools.choose("select");

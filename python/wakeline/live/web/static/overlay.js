@@ -28,6 +28,7 @@ export class Overlay {
     this.vectors = new Map();
     this.circles = new Map();
     this.fastest_px = Infinity; // of all symbols, a second
+    this.flashes = true;
   }
 
   draw(scene) {
@@ -249,6 +250,7 @@ export class Overlay {
     const { x0, xn, xe, y0, yn, ye } = view.projection;
     const shown = [];
     this.fastest_px = 0;
+    this.flashes = store.lost.size > 0 || store.zones.length > 0;
     const dangers = store.dangerOfEach();
     const alarmed = new Map();
     for (const alarm of store.alarms) {
@@ -265,6 +267,7 @@ export class Overlay {
       track.alarmed = alarmed.has(track.id);
       track.flashes = alarmed.get(track.id) ?? false;
       track.selected = track.id === selected;
+      this.flashes ||= track.flashes;
       this.fastest_px = Math.max(this.fastest_px, view.scale * (Math.hypot(track.vnorth, track.veast) + own.speed));
       shown.push(track);
     }
