@@ -7,7 +7,9 @@
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
 #include "support/numeric_jacobian.hpp"
+#include "wakeline/measurement/bearing.hpp"
 #include "wakeline/measurement/position.hpp"
+#include "wakeline/measurement/range.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
@@ -49,6 +51,31 @@ TEST(RangeBearingDoppler, JacobianIsTheDerivativeAllRound) {
       const Vec<double, 4> x(p[0], 8.0, p[1], -5.0);
       EXPECT_TRUE(derivative_agrees(radar, x, {.absolute = 1e-6, .relative = 1e-6}))
           << range << ", " << k;
+    }
+}
+
+TEST(PartsOfPosition, AreThoseOfRangeAndBearingAllRound) {
+  const RangeBearing radar{.range_std_m = 7,
+                           .bearing_std_rad = 0.01,
+                           .extent_std_m = 4,
+                           .bearing_offset_rad = 0.1,
+                           .own = kOwn};
+  const Bearing bearing{
+      .bearing_std_rad = 0.01, .extent_std_m = 4, .bearing_offset_rad = 0.1, .own = kOwn};
+  const Range range{.range_std_m = 7, .extent_std_m = 4, .own = kOwn};
+  for (const double range_m : {5.0, 300.0, 40e3})
+    for (int k = 0; k < 24; ++k) {
+      const Vec<double, 2> x = kOwn.position<double>() + range_m * towards(deg(15.0 * k));
+      EXPECT_TRUE(derivative_agrees(bearing, x, {.absolute = 1e-7, .relative = 1e-6}));
+      EXPECT_TRUE(derivative_agrees(range, x, {.absolute = 1e-7, .relative = 1e-6}));
+      const Vec<double, 2> z = radar.measure(x);
+      EXPECT_EQ(range.measure(x)[0], z[0]);
+      EXPECT_EQ(bearing.measure(x)[0], z[1]);
+      const Mat<double, 2, 2> r = radar.observe(z).covariance;
+      EXPECT_NEAR(range.observe(Vec<double, 1>(z[0])).covariance(0, 0), r(0, 0), 1e-9);
+      const auto seen = bearing.at_prediction(bearing.observe(Vec<double, 1>(z[1])),
+                                              Gaussian<2>{x, Mat<double, 2, 2>::Identity()});
+      EXPECT_NEAR(seen.covariance(0, 0), r(1, 1), 1e-9 * r(1, 1)) << "at the predicted range";
     }
 }
 

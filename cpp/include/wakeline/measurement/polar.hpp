@@ -241,12 +241,11 @@ struct PolarErrors {
   }
 };
 
-/// The fields that every radar sensor has.
+/// The fields of a sensor of bearings.
 template <class Sensor>
-constexpr auto radar_fields() noexcept {
+constexpr auto bearing_fields() noexcept {
   using S = Sensor;
   return field_table(
-      field("range_std_m", &S::range_std_m, kPositive, "m", "Standard deviation of the range."),
       field("bearing_std_rad", &S::bearing_std_rad, kAngleStd, "rad",
             "Standard deviation of the bearing."),
       field("extent_std_m", &S::extent_std_m, kNotNegative, "m",
@@ -255,6 +254,15 @@ constexpr auto radar_fields() noexcept {
             "Measured minus true bearing."),
       field("own", &S::own,
             "Position of the antenna, with its standard deviation and that of the heading."));
+}
+
+/// The fields that every radar sensor has.
+template <class Sensor>
+constexpr auto radar_fields() noexcept {
+  using S = Sensor;
+  return field_table(
+      field("range_std_m", &S::range_std_m, kPositive, "m", "Standard deviation of the range."),
+      bearing_fields<S>());
 }
 
 }  // namespace wakeline
