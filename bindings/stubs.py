@@ -14,7 +14,10 @@ from types import ModuleType
 
 import pybind11_stubgen
 
-SENSOR = "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
+SENSOR = (
+    "RangeBearing | ConvertedRangeBearing | RangeBearingDoppler | Position"
+    " | Bearing | Range | CustomSensor"
+)
 ESTIMATOR = (
     "Imm | AdaptiveGridImm | SwitchingGridImm | LikelyModelSetImm | ModeHistory"
     " | FuzzyAlphaBeta | BayesianAlphaBeta"
@@ -44,7 +47,7 @@ WORDS = [
         r"\1 -> NDArray[np.uint8] | NDArray[np.uint16]",
     ),
     (r"filters: collections\.abc\.Sequence", "filters: Sequence[Filter]"),
-    (r"collections\.abc\.Sequence\[", "Sequence["),
+    (r"collections\.abc\.(Callable|Mapping|Sequence)\b", r"\1"),
     (r"\bplots: typing\.Any", "plots: VideoPlots"),
     (
         r"(def (?:mode_probability|turn_rate_rad_s)\(self\)) -> typing\.Any",
@@ -77,9 +80,12 @@ HOMES = {
     "core": ["Gaussian", "Status", "Step"],
     "navigation": ["LocalPlane"],
     "measurement": [
+        "Bearing",
         "ConvertedRangeBearing",
+        "CustomSensor",
         "OwnShip",
         "Position",
+        "Range",
         "RangeBearing",
         "RangeBearingDoppler",
     ],
@@ -91,6 +97,7 @@ HOMES = {
         "ConstantVelocity",
         "CoordinatedTurn",
         "CoordinatedTurnRate",
+        "CustomMotion",
         "PiecewiseAcceleration",
         "ProcessNoise",
         "Singer",
@@ -119,8 +126,12 @@ def as_attribute(match: re.Match) -> str:
 def imports(noun: str, text: str) -> str:
     """The imports that the stub of a noun needs."""
     lines = []
-    if "Sequence[" in text:
-        lines.append("from collections.abc import Sequence")
+    code = re.sub(r'""".*?"""', "", text, flags=re.DOTALL)
+    generic = [
+        name for name in ("Callable", "Mapping", "Sequence") if re.search(rf"\b{name}\b", code)
+    ]
+    if generic:
+        lines.append(f"from collections.abc import {', '.join(generic)}")
     if "enum." in text:
         lines.append("import enum")
     if "typing." in text:
@@ -130,7 +141,6 @@ def imports(noun: str, text: str) -> str:
     arrays = [name for name in ("ArrayLike", "NDArray") if re.search(rf"\b{name}\b", text)]
     if arrays:
         lines.append(f"from numpy.typing import {', '.join(arrays)}")
-    code = re.sub(r'""".*?"""', "", text, flags=re.DOTALL)
     if re.search(r"\bRadarVideo\b", code):
         lines.append("from ..recording.video import RadarVideo")
     for home, names in HOMES.items():

@@ -58,24 +58,43 @@ class AnyTracker : public LockedTracker {
              const LateWindowConfig* window)
       : LockedTracker(make<VesselTracker>(window, radars, config, imm)) {}
 
-  using LockedTracker::visit;
+  /// Raises what a function of the estimator's models has raised in the call.
+  template <class Function>
+  auto visit(const Function& function) {
+    return checked([&] { return LockedTracker::visit(function); });
+  }
   /// Calls a function with the tracker, also of a window.
   template <class Function>
   auto visit(const Function& function) const {
-    return LockedTracker::visit([&](const auto& one) { return function(tracker_of(one)); });
+    return checked([&] {
+      return LockedTracker::visit([&](const auto& one) { return function(tracker_of(one)); });
+    });
   }
   /// Calls a function with the window, which there must be.
   template <class Function>
   auto visit_window(const Function& function) {
-    const auto hold = lock();
-    const auto usual = std::get_if<LateWindow<VesselTracker>>(&object_);
-    return usual != nullptr ? function(*usual)
-                            : function(std::get<LateWindow<Tracker<AnyEstimator>>>(object_));
+    return checked([&] {
+      const auto hold = lock();
+      const auto usual = std::get_if<LateWindow<VesselTracker>>(&object_);
+      return usual != nullptr ? function(*usual)
+                              : function(std::get<LateWindow<Tracker<AnyEstimator>>>(object_));
+    });
   }
 
   [[nodiscard]] bool has_window() const noexcept { return object_.index() > 1; }
 
  private:
+  template <class Call>
+  auto checked(const Call& call) const {
+    if constexpr (std::is_void_v<decltype(call())>) {
+      call();
+      raise_faults();
+    } else {
+      auto result = call();
+      raise_faults();
+      return result;
+    }
+  }
   template <class One, class... Arguments>
   static Variant make(const LateWindowConfig* window, const Arguments&... arguments) {
     if (window == nullptr) return One(arguments...);
@@ -89,6 +108,16 @@ class AnyTracker : public LockedTracker {
   template <class One>
   static const One& tracker_of(const LateWindow<One>& window) {
     return window.tracker();
+  }
+
+  void raise_faults() const {
+    std::visit(
+        []<class One>(const One& one) {
+          using Estimator = std::decay_t<decltype(tracker_of(one).prototype())>;
+          if constexpr (std::is_same_v<Estimator, AnyEstimator>)
+            raise_fault(tracker_of(one).prototype());
+        },
+        object_);
   }
 };
 

@@ -27,7 +27,7 @@ void run_all(const Estimator& prototype, const Recordings& recordings, int threa
     (void)estimator.start(belief_of(recordings.start(run)));
     return estimator;
   };
-  visit_numbers(recordings.sensor, [&](const auto& sensor) {
+  visit_numbers(std::get<AnySensor>(recordings.sensor), [&](const auto& sensor) {
     run_batch(begin, sensor, recordings.in, recordings.out, Threads{threads});
   });
 }
@@ -49,11 +49,17 @@ bool run_turns(const AnyEstimator& any, const Recordings& recordings, int thread
 }  // namespace
 
 void run_one_by_one(const AnyFilter& prototype, const Recordings& recordings, int threads) {
-  run_all(prototype, recordings, threads);
+  if (std::holds_alternative<RuntimeSensor>(recordings.sensor))
+    run_readings(prototype, recordings, threads);
+  else
+    run_all(prototype, recordings, threads);
 }
 
 void run_one_by_one(const AnyEstimator& prototype, const Recordings& recordings, int threads) {
-  if (!run_turns(prototype, recordings, threads)) run_all(prototype, recordings, threads);
+  if (std::holds_alternative<RuntimeSensor>(recordings.sensor))
+    run_readings(std::get<AnyImm>(prototype.variant()), recordings, threads);
+  else if (!run_turns(prototype, recordings, threads))
+    run_all(prototype, recordings, threads);
 }
 
 }  // namespace python

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catalog.hpp"
+#include "custom.hpp"
 #include "support/arguments.hpp"
 #include "support/types.hpp"
 
@@ -94,12 +95,19 @@ bool is_a(const py::handle& object) {
   return PyObject_TypeCheck(object.ptr(), type) != 0;
 }
 
-/// The C++ object behind a Python one, as one of a list of types. Throws TypeError that names them.
+/// The C++ object behind a Python one, where it is one of a list of types.
 template <class... Types>
-std::variant<Types...> one_of(TypeList<Types...>, const char* argument, const py::handle& object) {
+std::optional<std::variant<Types...>> found_in(TypeList<Types...>, const py::handle& object) {
   std::optional<std::variant<Types...>> found;
   (void)((is_a<Types>(object) && (found = object.cast<const Types&>(), true)) || ...);
-  if (found) return *found;
+  return found;
+}
+
+/// The same. Throws TypeError that names the types where it is none of them.
+template <class... Types>
+std::variant<Types...> one_of(TypeList<Types...> types, const char* argument,
+                              const py::handle& object) {
+  if (const auto found = found_in(types, object)) return *found;
   std::string names;
   int left = sizeof...(Types);
   (void)(..., (names += class_name_of<Types>() + (--left > 1 ? ", " : left == 1 ? " or " : "")));
@@ -107,6 +115,89 @@ std::variant<Types...> one_of(TypeList<Types...>, const char* argument, const py
 }
 
 inline AnySensor to_sensor(const py::handle& sensor) { return one_of(Sensors{}, "sensor", sensor); }
+
+/// True where an estimator takes a `RuntimeSensor`: a filter or an Imm.
+inline bool takes_readings(const AnyFilter&) { return true; }
+inline bool takes_readings(const AnyEstimator& estimator) {
+  return std::holds_alternative<AnyImm>(estimator.variant());
+}
+
+/// True where a reading of so many numbers, of which there are some, has a part missing.
+inline bool has_partial(const DoubleArray& z, int numbers) {
+  if (z.ndim() == 0 || z.shape(z.ndim() - 1) != numbers) return false;
+  const double* number = z.data();
+  for (const double* const end = number + z.size(); number != end; number += numbers) {
+    int missing = 0;
+    for (int m = 0; m < numbers; ++m) missing += number[m] != number[m];
+    if (missing != 0 && missing != numbers) return true;
+  }
+  return false;
+}
+
+/// True where each update calls Python.
+inline bool calls_python(const ReadingSensor& any) {
+  const auto* const sensor = std::get_if<RuntimeSensor>(&any);
+  const PySensor* const custom = sensor != nullptr ? python_sensor(*sensor) : nullptr;
+  return custom != nullptr && custom->calls();
+}
+
+/// Throws ValueError unless the sensor reads components that the state of each filter holds.
+inline void require_reads(const AnyFilter& filter, const RuntimeSensor& sensor) {
+  const StateRows reads = sensor.reads(), state = rows_of(filter.layout());
+  for (int k = 0; k < reads.states; ++k)
+    if (const Component one = reads.components[static_cast<std::size_t>(k)]; state.row_of(one) < 0)
+      throw py::value_error("sensor reads " + name_of(one) + ", which the state " +
+                            names_of(state) + " of the filter does not have");
+}
+inline void require_reads(const AnyEstimator& estimator, const RuntimeSensor& sensor) {
+  const AnyFilterBank& bank = std::get<AnyImm>(estimator.variant()).bank();
+  for (int k = 0; k < bank.size(); ++k) require_reads(bank.filter(k), sensor);
+}
+
+/// Throws ValueError when a Kalman filter, or one of several models an alpha-beta filter, is given
+/// a sensor that is not linear.
+template <class Estimator>
+void require_linear(const Estimator& estimator, bool linear) {
+  if (!linear && estimator.linear())
+    throw py::value_error(
+        "sensor must be linear for Kalman and, among filters, AlphaBeta: use "
+        "ConvertedRangeBearing, Position or LinearSensor, or Ekf or Ukf");
+}
+
+/// The sensor of a reading or of many, as this estimator takes it. `covariances` is true where the
+/// readings have their own. Throws TypeError or ValueError where it cannot.
+template <class Estimator>
+ReadingSensor to_reading_sensor(const Estimator& estimator, const py::handle& object,
+                                const DoubleArray& z, bool covariances) {
+  const bool takes = takes_readings(estimator);
+  if (covariances && !takes)
+    throw py::value_error("covariance must be None for any estimator but a filter or an Imm");
+  const auto checked = [&](const RuntimeSensor& sensor) -> ReadingSensor {
+    require_reads(estimator, sensor);
+    return sensor;
+  };
+  if (const auto known = found_in(Sensors{}, object))
+    return std::visit(
+        [&]<class Sensor>(const Sensor& sensor) -> ReadingSensor {
+          require_linear(estimator, Sensor::kLinear);
+          if (takes && (covariances || has_partial(z, Sensor::kMeasurements)))
+            return checked(sensor);
+          return *known;
+        },
+        *known);
+  if (!takes) return to_sensor(object);
+  if (is_a<PySensor>(object)) {
+    const auto custom = object.cast<std::shared_ptr<PySensor>>();
+    require_linear(estimator, custom->linear());
+    return checked(RuntimeSensor(custom));
+  }
+  return std::visit(
+      [&]<class Sensor>(const Sensor& sensor) {
+        require_linear(estimator, Sensor::kLinear);
+        return checked(sensor);
+      },
+      one_of(Joined<Sensors, PartSensors>{}, "sensor", object));
+}
 
 /// Calls `function(sensor)` with the C++ sensor behind a Python one.
 template <class Function>
@@ -145,10 +236,11 @@ inline PyGaussian to_gaussian(const AnyBelief& belief) { return {belief.mean, be
 /// The belief that an estimator of a layout starts with: over that, or over [x, vx, y, vy].
 inline AnyBelief to_start(const char* name, const PyGaussian& gaussian, StateLayout layout) {
   const int states = states_of(layout);
-  if (gaussian.mean.size() != 4 && gaussian.mean.size() != states)
-    throw py::value_error(std::string(name) + " must have a mean of 4" +
-                          (states == 4 ? "" : " or " + std::to_string(states)) + " states, got " +
-                          std::to_string(gaussian.mean.size()));
+  const bool of_kinematics = has_kinematics(layout);
+  if (gaussian.mean.size() != states && !(of_kinematics && gaussian.mean.size() == 4))
+    throw py::value_error(std::string(name) + " must have a mean of " +
+                          (of_kinematics && states != 4 ? "4 or " : "") + std::to_string(states) +
+                          " states, got " + std::to_string(gaussian.mean.size()));
   return {gaussian.mean.size() == states ? layout : StateLayout::kKinematics, gaussian.mean,
           gaussian.covariance};
 }
@@ -158,18 +250,26 @@ PyStep to_step(const AnyStep<M>& step) {
   return {step.status, step.innovation, step.innovation_covariance, step.nis, step.log_likelihood};
 }
 
-/// Throws ValueError when a Kalman filter, or one of several models an alpha-beta filter, is given
-/// a sensor that is not linear.
-template <class Estimator>
-void require_linear(const Estimator& estimator, const AnySensor& sensor) {
-  const bool linear =
-      std::visit([]<class Sensor>(const Sensor&) { return Sensor::kLinear; }, sensor);
-  if (!linear && estimator.linear())
-    throw py::value_error(
-        "sensor must be linear for Kalman and, among filters, AlphaBeta: use ConvertedRangeBearing "
-        "or "
-        "Position, or Ekf or Ukf");
+/// The step of a `RuntimeSensor`, with NaN for the numbers that were missing.
+inline PyStep to_step(const Step<kMostNumbers>& step, const RuntimeSensor& sensor,
+                      const Vec<double, kMostNumbers>& z) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const int numbers = sensor.numbers();
+  PyStep result{step.status, step.innovation.head(numbers),
+                step.innovation_covariance.topLeftCorner(numbers, numbers), step.nis,
+                step.log_likelihood};
+  for (int m = 0; m < numbers; ++m) {
+    if (z[m] == z[m]) continue;
+    result.innovation[m] = kNaN;
+    result.innovation_covariance.row(m).setConstant(kNaN);
+    result.innovation_covariance.col(m).setConstant(kNaN);
+  }
+  return result;
 }
+
+/// The covariances (..., M, M) of readings (..., M). Throws unless each of a reading that there is
+/// is symmetric positive definite.
+void require_covariances(const DoubleArray& covariance, const DoubleArray& z);
 
 /// A known acceleration, (2,) array or None.
 inline std::optional<Vec<double, 2>> to_acceleration(const std::optional<DoubleArray>& array) {

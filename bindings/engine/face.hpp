@@ -8,6 +8,30 @@
 
 namespace wakeline::python {
 
+/// Updates a filter or an Imm with a reading of a `RuntimeSensor`.
+template <class Estimator>
+PyStep update_reading(Estimator& estimator, RuntimeSensor& sensor, const DoubleArray& z,
+                      const std::optional<DoubleArray>& covariance) {
+  const int numbers = sensor.numbers();
+  Vec<double, kMostNumbers> padded =
+      Vec<double, kMostNumbers>::Constant(std::numeric_limits<double>::quiet_NaN());
+  padded.head(numbers) = to_vector("z", z, numbers);
+  if (covariance) {
+    require_covariances(*covariance, z);
+    sensor.set_covariance(covariance->data());
+  }
+  const auto step = [&] {
+    if constexpr (std::is_same_v<Estimator, AnyEstimator>)
+      return std::get<AnyImm>(estimator.variant()).update(sensor, padded);
+    else
+      return estimator.update(sensor, padded);
+  }();
+  raise_fault(estimator);
+  raise_fault(sensor);
+  require_ok(step.status, "update");
+  return to_step(step, sensor, padded);
+}
+
 /// Adds start, predict, update, estimate, started and run to the class that estimators share.
 /// `Estimator` is AnyFilter or AnyEstimator.
 template <class Estimator>
@@ -26,24 +50,49 @@ void define_face(py::class_<Estimator>& face) {
             const auto known = to_acceleration(acceleration);
             if constexpr (std::is_same_v<Estimator, AnyEstimator>)
               if (estimator.has_modes()) static_cast<AnyMixture&>(estimator).note_step(dt_s);
-            require_ok(known ? estimator.predict(dt_s, *known) : estimator.predict(dt_s),
-                       "predict");
+            const Status status = known ? estimator.predict(dt_s, *known) : estimator.predict(dt_s);
+            raise_fault(estimator);
+            require_ok(status, "predict");
           },
           py::arg("dt_s"), py::arg("acceleration_mps2") = py::none(),
           "Moves dt_s seconds on, under a known acceleration [north, east] where one is given; "
           "mode probabilities follow the chain.")
       .def(
           "update",
-          [](Estimator& estimator, const py::object& object, const DoubleArray& z) {
-            const AnySensor sensor = to_sensor(object);
-            require_linear(estimator, sensor);
-            return visit_numbers(sensor, [&]<int M>(const AnySensorOf<M>& one) {
+          [](Estimator& estimator, const py::object& object, const DoubleArray& z,
+             const std::optional<DoubleArray>& covariance) {
+            ReadingSensor any = to_reading_sensor(estimator, object, z, covariance.has_value());
+            if (auto* const sensor = std::get_if<RuntimeSensor>(&any))
+              return update_reading(estimator, *sensor, z, covariance);
+            return visit_numbers(std::get<AnySensor>(any), [&]<int M>(const AnySensorOf<M>& one) {
               const auto step = estimator.update(one, to_vector<M>("z", z));
+              raise_fault(estimator);
               require_ok(step.status, "update");
               return to_step(step);
             });
           },
-          py::arg("sensor"), py::arg("z"), "Corrects the belief by a reading; returns the Step.")
+          py::arg("sensor"), py::arg("z"), py::arg("covariance") = py::none(),
+          R"(Corrects the belief by a reading; returns the Step.
+
+Parameters
+----------
+sensor : sensor
+z : (M,) array
+    Numbers that are NaN are not measured: the others are used.
+covariance : (M, M) array, optional
+    Of this reading, instead of the sensor's: of a filter and an Imm.
+
+Returns
+-------
+Step
+    NaN where a number was missing; nis has as many degrees of freedom as there were numbers.
+
+Raises
+------
+ValueError
+    When a shape does not fit, or the sensor reads what the state does not have.
+FilterError
+    When the update fails.)")
       .def(
           "estimate",
           [](const Estimator& estimator) {

@@ -22,19 +22,42 @@ struct PyEkf : AnyFilter {};
 struct PyUkf : AnyFilter {};
 struct PySquareRootUkf : AnyFilter {};
 
-/// A filter over some of the motion models, without parameters of its own.
-template <class SomeMotion, class PyFilter, class Make>
+/// A motion model of the catalogue or a custom one.
+template <class MotionList>
+struct OrCustom;
+template <class... Motion>
+struct OrCustom<TypeList<Motion...>> {
+  using Type = std::variant<Motion..., std::shared_ptr<PyMotion>>;
+};
+using MotionArgument = OrCustom<Motions>::Type;
+
+/// Calls `of_catalog` or `of_custom` with a motion model.
+template <class OfCatalog, class OfCustom>
+AnyFilter filter_over(const MotionArgument& motion, const OfCatalog& of_catalog,
+                      const OfCustom& of_custom) {
+  return std::visit(
+      [&]<class Motion>(const Motion& model) -> AnyFilter {
+        if constexpr (std::is_same_v<Motion, std::shared_ptr<PyMotion>>)
+          return of_custom(model);
+        else
+          return of_catalog(model);
+      },
+      motion);
+}
+
+/// A filter over a motion model, without other parameters.
+template <class PyFilter, class Make>
 void define_plain(py::class_<PyFilter, AnyFilter>& filter, const Make& make) {
   define_copies(filter);
-  filter.def(py::init([make](const SomeMotion& motion) { return PyFilter{make(motion)}; }),
+  filter.def(py::init([make](const MotionArgument& motion) { return PyFilter{make(motion)}; }),
              py::arg("motion"));
 }
 
 /// One with the parameters of the unscented transform.
-template <class PyFilter, class Make>
+template <class SomeMotion, class PyFilter, class Make>
 void define_unscented(py::class_<PyFilter, AnyFilter>& filter, const Make& make) {
   define_copies(filter);
-  filter.def(py::init([make](const AnyMotion& motion, double alpha, double beta, double kappa) {
+  filter.def(py::init([make](const SomeMotion& motion, double alpha, double beta, double kappa) {
                return PyFilter{make(motion, Unscented{alpha, beta, kappa})};
              }),
              py::arg("motion"), py::kw_only(), py::arg("alpha") = Unscented{}.alpha,
@@ -43,10 +66,15 @@ void define_unscented(py::class_<PyFilter, AnyFilter>& filter, const Make& make)
 
 Arguments filter_arguments(const AnyFilter& any) {
   return std::visit(
-      [](const auto& filter) {
+      []<class Filter>(const Filter& filter) {
         Arguments arguments;
         arguments.with("motion", filter.motion());
-        if constexpr (requires { filter.unscented(); })
+        if constexpr (std::is_same_v<Filter, CustomFilter>) {
+          if (const Unscented* const unscented = filter.unscented())
+            arguments.with("alpha", unscented->alpha)
+                .with("beta", unscented->beta)
+                .with("kappa", unscented->kappa);
+        } else if constexpr (requires { filter.unscented(); })
           arguments.with("alpha", filter.unscented().alpha)
               .with("beta", filter.unscented().beta)
               .with("kappa", filter.unscented().kappa);
@@ -95,7 +123,9 @@ py::tuple smooth_arrays(const AnyFilter& filter, const DoubleArray& mean,
     for (std::size_t k = beliefs.size(); k-- > 1;) {
       const auto pushed = std::span<const Vec<double, 2>>(known).subspan(known.empty() ? 0 : k,
                                                                          known.empty() ? 0 : 1);
-      require_ok(smooth_any_pair(filter, beliefs[k - 1], beliefs[k], steps[k], pushed), "smooth");
+      const Status status = smooth_any_pair(filter, beliefs[k - 1], beliefs[k], steps[k], pushed);
+      raise_fault(filter);
+      require_ok(status, "smooth");
     }
   }
   for (py::ssize_t k = 0; k < scans; ++k) {
@@ -119,6 +149,10 @@ py::object as_python(const AnyFilter& any, const Ukf<Motion>&) {
 template <class Motion>
 py::object as_python(const AnyFilter& any, const SquareRootUkf<Motion>&) {
   return py::cast(PySquareRootUkf{any});
+}
+py::object as_python(const AnyFilter& any, const CustomFilter& filter) {
+  if (filter.unscented() != nullptr) return py::cast(PyUkf{any});
+  return any.linear() ? py::cast(PyKalman{any}) : py::cast(PyEkf{any});
 }
 py::object as_python(const AnyFilter&, const AlphaBeta<>& filter) {
   return py::cast(PyEstimator<AlphaBeta<>>(filter));
@@ -164,29 +198,47 @@ FilterError
 
   py::class_<PyKalman, AnyFilter> kalman(
       m, "Kalman", "The Kalman filter: exact for linear motion and linear sensors.");
-  define_plain<AnyMotion>(kalman, [](const AnyMotion& motion) {
-    return std::visit(
-        []<class Motion>(const Motion& model) -> AnyFilter {
-          if constexpr (LinearMotionModel<Motion>)
+  const auto reject_nonlinear = [](const char* type) {
+    throw py::type_error(std::string("motion of Kalman must be linear, got ") + type +
+                         ": use Ekf or Ukf");
+  };
+  define_plain(kalman, [reject_nonlinear](const MotionArgument& motion) {
+    return filter_over(
+        motion,
+        [&]<class Motion>(const Motion& model) {
+          if constexpr (LinearMotionModel<Motion>) {
             return any_kalman(model);
-          else
-            throw py::type_error(std::string("motion of Kalman must be linear, got ") +
-                                 Motion::kName + ": use Ekf or Ukf");
+          } else {
+            reject_nonlinear(Motion::kName);
+            return any_filter<Ekf>(model);
+          }
         },
-        motion);
+        [&](const std::shared_ptr<PyMotion>& model) {
+          if (!model->linear()) reject_nonlinear(model->type());
+          return AnyFilter(CustomFilter(model), true);
+        });
   });
   py::class_<PyEkf, AnyFilter> ekf(
       m, "Ekf", "The extended Kalman filter: motion and sensor linearized about the mean.");
-  define_plain<AnyMotion>(ekf, [](const AnyMotion& motion) { return any_filter<Ekf>(motion); });
+  define_plain(ekf, [](const MotionArgument& motion) {
+    return filter_over(
+        motion, [](const auto& model) { return AnyFilter(Ekf(model)); },
+        [](const std::shared_ptr<PyMotion>& model) { return AnyFilter(CustomFilter(model)); });
+  });
   py::class_<PyUkf, AnyFilter> ukf(
       m, "Ukf", "The unscented Kalman filter, with the scaled transform's alpha, beta and kappa.");
-  define_unscented(ukf, [](const AnyMotion& motion, const Unscented& unscented) {
-    return any_filter<Ukf>(motion, unscented);
-  });
+  define_unscented<MotionArgument>(
+      ukf, [](const MotionArgument& motion, const Unscented& unscented) {
+        return filter_over(
+            motion, [&](const auto& model) { return AnyFilter(Ukf(model, unscented)); },
+            [&](const std::shared_ptr<PyMotion>& model) {
+              return AnyFilter(CustomFilter(model, unscented));
+            });
+      });
   py::class_<PySquareRootUkf, AnyFilter> square_root(
       m, "SquareRootUkf",
       "The unscented Kalman filter with a square root of the covariance, for long runs.");
-  define_unscented(square_root, [](const AnyMotion& motion, const Unscented& unscented) {
+  define_unscented<AnyMotion>(square_root, [](const AnyMotion& motion, const Unscented& unscented) {
     return any_filter<SquareRootUkf>(motion, unscented);
   });
 

@@ -23,22 +23,29 @@ int smooth_all(const AnyImm& prototype, const Recordings& recordings) {
   const RunInput& in = recordings.in;
   std::vector<Status> status(in.runs);
   const ThreadShare threads(in.runs * in.scans);
-  visit_numbers(recordings.sensor, [&](const auto& sensor) {
-    Threads{threads.count()}(in.runs, [&](std::size_t run) noexcept {
+  const bool calls = calls_python(prototype) || calls_python(recordings.sensor);
+  const auto smooth_with = [&](const auto& sensor) {
+    Threads{calls ? 1 : threads.count()}(in.runs, [&](std::size_t run) noexcept {
       AnyImm imm = prototype;
       (void)imm.start(recordings.start(run));
       status[run] = run_smoothed(imm, sensor, in, run, recordings.out);
     });
-  });
+  };
+  if (const auto* const sensor = std::get_if<RuntimeSensor>(&recordings.sensor))
+    smooth_with(*sensor);
+  else
+    visit_numbers(std::get<AnySensor>(recordings.sensor), smooth_with);
+  raise_fault(prototype);
   for (std::size_t run = 0; run < in.runs; ++run)
     if (status[run] != Status::kOk)
       throw FilterError("smooth of run " + std::to_string(run) + ": " + to_string(status[run]));
-  return 1;
+  return calls ? 0 : 1;
 }
 
 RunResult smooth(const PyEstimator<AnyImm>& estimator, const RunArguments& arguments) {
-  const AnySensor sensor = to_sensor(arguments.sensor);
-  require_linear(estimator, sensor);
+  const ReadingSensor sensor =
+      to_reading_sensor(static_cast<const AnyEstimator&>(estimator), arguments.sensor, arguments.z,
+                        arguments.covariance.has_value());
   warn_of_uneven_steps(estimator, arguments.dt_s);
   const AnyImm prototype = estimator.get();  // as another thread may change it meanwhile
   return run_recordings(run_layout(estimator), arguments, sensor,
@@ -61,7 +68,7 @@ smoothings; each thread takes one recording after the other. If a step is too lo
 
 Parameters
 ----------
-z, dt_s, sensor, start, own_position_m, own_velocity_mps, acceleration_mps2, gate, reopen_after
+z, dt_s, sensor, start, own_position_m, own_velocity_mps, acceleration_mps2, gate, reopen_after, covariance
     As of `run`.
 
 Returns

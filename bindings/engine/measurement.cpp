@@ -19,12 +19,13 @@ void define_sensor(py::class_<Sensor>& sensor) {
         return PyGaussian::from(s.observe(to_vector<kM>("z", z)));
       },
       py::arg("z"), "The reading as value and covariance R, converted if the sensor is.");
-  sensor.def(
-      "position",
-      [](const Sensor& s, const DoubleArray& z) {
-        return PyGaussian::from(s.position(to_vector<kM>("z", z)));
-      },
-      py::arg("z"), "The reading in north/east, m: mean (2,), covariance (2, 2).");
+  if constexpr (PositionSensor<Sensor>)
+    sensor.def(
+        "position",
+        [](const Sensor& s, const DoubleArray& z) {
+          return PyGaussian::from(s.position(to_vector<kM>("z", z)));
+        },
+        py::arg("z"), "The reading in north/east, m: mean (2,), covariance (2, 2).");
   sensor.def(
       "measure",
       [](const Sensor& s, const DoubleArray& x) {
@@ -47,7 +48,7 @@ void define_measurement(py::module_& parent) {
   define_struct<OwnShip>(m, "OwnShip",
                          "Where the antenna is when it measures, and how well that is known.",
                          {.writable = true});
-  Sensors::for_each([&]<class Sensor>(std::type_identity<Sensor>) {
+  Joined<Sensors, PartSensors>::for_each([&]<class Sensor>(std::type_identity<Sensor>) {
     // Own ship moves, so that a sensor that has one can be written to.
     constexpr bool kMoves = requires(const Sensor& one) { one.own; };
     auto sensor = define_struct<Sensor>(m, Sensor::kName, Sensor::kSummary,

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_engine, m) {
   wakeline::python::define_core(m);
   wakeline::python::define_motion(m);
   wakeline::python::define_measurement(m);
+  wakeline::python::define_custom(m);
   wakeline::python::define_gating(m);
   wakeline::python::define_filter(m);
   wakeline::python::define_multimodel(m);

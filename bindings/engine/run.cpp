@@ -3,6 +3,8 @@
 #include "run.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "lanes/lanes.hpp"
@@ -19,15 +21,13 @@ AnyBelief parse_start(const py::handle& item, StateLayout layout) {
 }
 
 /// Throws where own ship moves under a sensor of range rates that has it at rest.
-void require_own_velocity(const AnySensor& any, const RunInput& in) {
-  const bool without = std::visit(
-      [](const auto& sensor) {
-        if constexpr (requires { sensor.range_rate_std_mps; })
-          return sensor.own.vnorth_mps == 0.0 && sensor.own.veast_mps == 0.0;
-        else
-          return false;
-      },
-      any);
+void require_own_velocity(const ReadingSensor& any, const RunInput& in) {
+  const bool without = visit_reading(any, [](const auto& sensor) {
+    if constexpr (requires { sensor.range_rate_std_mps; })
+      return sensor.own.vnorth_mps == 0.0 && sensor.own.veast_mps == 0.0;
+    else
+      return false;
+  });
   if (!without || in.own_m == nullptr || in.own_mps != nullptr) return;
   for (std::size_t k = 2; k < 2 * in.scans; ++k)
     if (in.own_m[k] != in.own_m[k - 2])
@@ -41,8 +41,9 @@ void require_own_velocity(const AnySensor& any, const RunInput& in) {
 template <class Kernel>
 int run_in_lanes(const Recordings& all, const Kernel& kernel) {
   const LaneKernels* kernels = lane_kernels();
-  if (kernels == nullptr || all.in.runs < 2) return 0;
-  return visit_numbers(all.sensor, [&]<int M>(const AnySensorOf<M>& sensor) {
+  const auto* const any = std::get_if<AnySensor>(&all.sensor);
+  if (kernels == nullptr || all.in.runs < 2 || any == nullptr) return 0;
+  return visit_numbers(*any, [&]<int M>(const AnySensorOf<M>& sensor) {
     if constexpr (M == 2) {
       const ThreadShare threads(all.in.runs * all.in.scans /
                                 static_cast<std::size_t>(kernels->lanes));
@@ -53,12 +54,41 @@ int run_in_lanes(const Recordings& all, const Kernel& kernel) {
   });
 }
 
+/// In this thread alone where steps call Python, which other threads would wait for.
 template <class Estimator>
 int run_each(const Estimator& estimator, const Recordings& recordings) {
+  if (calls_python(estimator) || calls_python(recordings.sensor)) {
+    run_one_by_one(estimator, recordings, 1);
+    return 0;
+  }
   const ThreadShare threads(recordings.in.runs * recordings.in.scans);
   run_one_by_one(estimator, recordings, threads.count());
   return 1;
 }
+
+/// The readings of a `RuntimeSensor` and their innovations, in rows of `kMostNumbers`.
+struct PaddedReadings {
+  std::size_t rows, numbers;
+  std::vector<double> z, innovation;
+
+  PaddedReadings(const double* from, std::size_t rows_, std::size_t numbers_)
+      : rows(rows_),
+        numbers(numbers_),
+        z(rows * kMostNumbers, std::numeric_limits<double>::quiet_NaN()),
+        innovation(z.size()) {
+    for (std::size_t row = 0; row < rows; ++row)
+      std::copy_n(from + row * numbers, numbers, z.data() + row * kMostNumbers);
+  }
+
+  /// NaN for missing numbers.
+  void write_innovation(double* to) const {
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t m = 0; m < numbers; ++m) {
+        const std::size_t k = row * kMostNumbers + m;
+        to[row * numbers + m] = z[k] == z[k] ? innovation[k] : z[k];
+      }
+  }
+};
 
 /// "<RunResult: 500 runs of 250 scans, 4 states, 3 models>".
 std::string result_text(const RunResult& result) {
@@ -155,12 +185,39 @@ RunLayout run_layout(const AnyEstimator& estimator) {
           estimator.turn_rates_rad_s().size() > 0};
 }
 
+void require_covariances(const DoubleArray& covariance, const DoubleArray& z) {
+  std::vector<py::ssize_t> shape = shape_of(z);
+  const py::ssize_t numbers = shape.back();
+  shape.push_back(numbers);
+  require_shape(shape_of(covariance) == shape, "covariance", shape_text(shape), covariance);
+  for (py::ssize_t row = 0; row < z.size() / numbers; ++row) {
+    const double* const reading = z.data() + row * numbers;
+    if (std::all_of(reading, reading + numbers, [](double one) { return one != one; })) continue;
+    const double* const c = covariance.data() + row * numbers * numbers;
+    const auto at = [&](py::ssize_t i, py::ssize_t j) { return c[numbers * i + j]; };
+    double largest = 0.0;
+    bool symmetric = true;
+    for (py::ssize_t i = 0; i < numbers; ++i) largest = std::max(largest, std::abs(at(i, i)));
+    for (py::ssize_t i = 0; i < numbers; ++i)
+      for (py::ssize_t j = 0; j < i; ++j)
+        symmetric = symmetric && std::abs(at(i, j) - at(j, i)) <= 1e-9 * largest;
+    if (!symmetric || !RuntimeCholesky(static_cast<int>(numbers), at).ok)
+      throw py::value_error(
+          "covariance must be symmetric positive definite, which that of reading " +
+          std::to_string(row) + " is not");
+  }
+}
+
 RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
-                         const AnySensor& sensor,
+                         const ReadingSensor& sensor,
                          const std::function<int(const Recordings&)>& run_all) {
   const DoubleArray& z = arguments.z;
-  const py::ssize_t numbers = std::visit(
-      []<class Sensor>(const Sensor&) { return py::ssize_t{Sensor::kMeasurements}; }, sensor);
+  const py::ssize_t numbers = visit_reading(sensor, []<class Sensor>(const Sensor& one) {
+    if constexpr (DeclaresSizes<Sensor>)
+      return py::ssize_t{Sensor::kMeasurements};
+    else
+      return py::ssize_t{one.numbers()};
+  });
   const bool many = z.ndim() == 3;
   require_shape((z.ndim() == 2 || many) && z.shape(z.ndim() - 1) == numbers, "z",
                 "(T, " + std::to_string(numbers) + ") or (R, T, " + std::to_string(numbers) + ")",
@@ -169,20 +226,35 @@ RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
   in.runs = many ? static_cast<std::size_t>(z.shape(0)) : 1;
   in.scans = static_cast<std::size_t>(z.shape(many ? 1 : 0));
   in.z = z.data();
+  const auto* const readings = std::get_if<RuntimeSensor>(&sensor);
+  std::optional<PaddedReadings> padded;
+  if (readings != nullptr) {
+    padded.emplace(z.data(), in.runs * in.scans, static_cast<std::size_t>(numbers));
+    in.z = padded->z.data();
+  }
+  if (arguments.covariance) {
+    require_covariances(*arguments.covariance, z);
+    in.covariance = arguments.covariance->data();
+  }
   const std::vector<double> steps_s = parse_steps(arguments.dt_s, in.scans);
   in.dt_s = steps_s.data();
   const std::vector<AnyBelief> starts = parse_starts(arguments.start, in.runs, layout.layout);
   if (arguments.gate) {
     in.gate = std::get_if<RadiusGate>(&*arguments.gate);
     in.nis_gate = std::get_if<ChiSquareGate>(&*arguments.gate);
+    if (readings != nullptr && in.gate != nullptr)
+      throw py::value_error(
+          "gate must be a ChiSquareGate for readings that are not whole positions, or have their "
+          "own covariance, got a RadiusGate");
   }
   if (arguments.reopen_after) {
     if (!arguments.gate) throw py::value_error("reopen_after needs a gate, got None");
     require(*arguments.reopen_after >= 1, "reopen_after", "at least 1", *arguments.reopen_after);
     in.reopen_after = *arguments.reopen_after;
   }
-  const bool carried =
-      std::visit([](const auto& one) { return own_ship_of(one) != nullptr; }, sensor);
+  const bool carried = visit_reading(sensor, [](const auto& one) {
+    return requires { one.own; };
+  });
   const auto of_own_ship = [&](const char* name, const std::optional<DoubleArray>& array) {
     if (array && !carried)
       throw py::value_error(std::string(name) + " must be None for a sensor without own ship");
@@ -221,13 +293,17 @@ RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
                       result.covariance.mutable_data(),
                       modes.mutable_data(),
                       layout.turn_rates ? rates.mutable_data() : nullptr,
-                      result.innovation.mutable_data(),
+                      padded ? padded->innovation.data() : result.innovation.mutable_data(),
                       result.nis.mutable_data(),
                       result.log_likelihood.mutable_data(),
                       result.status.mutable_data()};
   {
     const py::gil_scoped_release release;
     result.lanes = run_all({sensor, in, starts, out});
+  }
+  if (readings != nullptr) {
+    raise_fault(*readings);
+    padded->write_innovation(result.innovation.mutable_data());
   }
   return result;
 }
@@ -273,7 +349,8 @@ void define_run_result(py::module_& m) {
       .def_readonly("status", &RunResult::status, "(..., T) values of Status")
       .def_readonly("lanes", &RunResult::lanes,
                     "how many filters were stepped side by side in one register: recordings, or "
-                    "hypotheses of a ModeHistory; 1 for one after the other")
+                    "hypotheses of a ModeHistory; 1 for one after the other; 0 where steps called "
+                    "Python")
       .def("__repr__", &result_text);
   // Of optional libraries, which only Python knows.
   const auto in_python = [](const char* function) {

@@ -36,6 +36,7 @@ struct RunArguments {
   std::optional<DoubleArray> acceleration_mps2;
   std::optional<std::variant<RadiusGate, ChiSquareGate>> gate;
   std::optional<int> reopen_after;
+  std::optional<DoubleArray> covariance;
 };
 
 /// Of an estimator, what `run` allocates its results by.
@@ -49,9 +50,9 @@ RunLayout run_layout(const AnyFilter& filter);
 RunLayout run_layout(const AnyEstimator& estimator);
 
 /// Reads the arguments, allocates the results and calls `run_all`, which returns the lanes that it
-/// took.
+/// took. Raises what a function of the sensor has raised.
 RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
-                         const AnySensor& sensor,
+                         const ReadingSensor& sensor,
                          const std::function<int(const Recordings&)>& run_all);
 
 /// In lanes where the estimator has them for the sensor, else one after the other; returns the
@@ -74,14 +75,16 @@ template <class Estimator>
 RunResult run(const Estimator& prototype, const RunArguments& arguments) {
   if constexpr (std::is_base_of_v<AnyEstimator, Estimator>)
     warn_of_uneven_steps(prototype, arguments.dt_s);
-  const AnySensor sensor = to_sensor(arguments.sensor);
-  require_linear(prototype, sensor);
   const Estimator estimator = prototype;  // as another thread may change it meanwhile
-  return run_recordings(run_layout(estimator), arguments, sensor,
-                        [&](const Recordings& recordings) {
-                          require_starts(estimator, recordings.starts);
-                          return run_all(estimator, recordings);
-                        });
+  const ReadingSensor sensor =
+      to_reading_sensor(estimator, arguments.sensor, arguments.z, arguments.covariance.has_value());
+  RunResult result =
+      run_recordings(run_layout(estimator), arguments, sensor, [&](const Recordings& recordings) {
+        require_starts(estimator, recordings.starts);
+        return run_all(estimator, recordings);
+      });
+  raise_fault(estimator);
+  return result;
 }
 
 /// The beliefs that `start` means: one Gaussian for all runs or a sequence of R.
@@ -105,14 +108,15 @@ void define_run(py::class_<Estimator, Options...>& face, const char* name, const
                  const std::optional<DoubleArray>& own_velocity_mps,
                  const std::optional<DoubleArray>& acceleration_mps2,
                  const std::optional<std::variant<RadiusGate, ChiSquareGate>>& gate,
-                 const std::optional<int>& reopen_after) {
+                 const std::optional<int>& reopen_after,
+                 const std::optional<DoubleArray>& covariance) {
         return function(estimator, {z, dt_s, sensor, start, own_position_m, own_velocity_mps,
-                                    acceleration_mps2, gate, reopen_after});
+                                    acceleration_mps2, gate, reopen_after, covariance});
       },
       py::arg("z"), py::arg("dt_s"), py::arg("sensor"), py::arg("start"),
       py::arg("own_position_m") = py::none(), py::arg("own_velocity_mps") = py::none(),
       py::arg("acceleration_mps2") = py::none(), py::arg("gate") = py::none(),
-      py::arg("reopen_after") = py::none(), doc);
+      py::arg("reopen_after") = py::none(), py::arg("covariance") = py::none(), doc);
 }
 
 /// Adds `RunResult`.
@@ -123,10 +127,12 @@ const char* const kRunDoc = R"(Run whole recordings.
 Parameters
 ----------
 z : (T, M) or (R, T, M) array
-    Readings of one run or of R independent runs; a row of NaN is a missed scan.
+    Readings of one run or of R independent runs; a row of NaN is a missed scan. Of a row with some
+    NaN the other numbers are used, by a filter and an Imm, with the plot as range and bearing.
 dt_s : float or (T,) array
     Time before each reading, s; the first counts from the start.
 sensor : RangeBearing, ConvertedRangeBearing, RangeBearingDoppler or Position
+    Of a filter and an Imm also Bearing, Range, LinearSensor or FunctionSensor.
 start : Gaussian or sequence of R of them
     Belief one step before the first reading, over the filter's state or over [x, vx, y, vy].
 own_position_m : (T, 2) array, optional
@@ -141,6 +147,8 @@ gate : RadiusGate or ChiSquareGate, optional
 reopen_after : int, optional
     After so many readings outside the gate in a row, all are used until one is inside again: the
     target is elsewhere, not its readings. Default: never.
+covariance : (T, M, M) or (R, T, M, M) array, optional
+    Covariance of each reading, instead of the sensor's: of a filter and an Imm.
 
 Returns
 -------
@@ -149,12 +157,14 @@ RunResult
     status (..., T); mode_probability (..., T, K) of multiple-model estimators and turn_rate_rad_s
     (..., T, K) of adaptive turn rates, else None. lanes: how many filters were stepped side by side in
     one register: recordings of a filter or an Imm, hypotheses of a ModeHistory. It is 1 for a
-    single recording, a sensor of range rates and every other estimator.
+    single recording, a sensor other than of a whole position, a LinearMotion and every other
+    estimator, and 0 where each step calls functions in Python, which takes a hundred times as long.
 
 Raises
 ------
 ValueError
-    When a shape does not fit, a sensor of range rates moves without `own_velocity_mps`, or
+    When a shape does not fit, a covariance is not symmetric positive definite, the sensor reads
+    what the state does not have, a sensor of range rates moves without `own_velocity_mps`, or
     `reopen_after` is without a gate or less than 1.
 FilterError
     When an estimator cannot start. A later step that fails is reported in `status`: an invalid

@@ -38,6 +38,12 @@ inline const AnyEstimator& to_mixture(const py::handle& estimator) {
                          class_name(estimator));
   require_own_class(estimator);
   const auto& mixture = estimator.cast<const AnyMixture&>();
+  for_each_custom(mixture, [](const PyMotion& motion) {
+    if (!has_kinematics(motion.layout()))
+      throw py::value_error(
+          "estimator must have x, vx, y and vy among the states of each model, got " +
+          names_of(rows_of(motion.layout())));
+  });
   warn_of_steps(mixture, "the steps of a tracker, which are those of its scans and plots");
   return mixture;
 }

@@ -81,6 +81,7 @@ void define_benchmark(py::module_& m);
 void define_core(py::module_& m);
 void define_motion(py::module_& m);
 void define_measurement(py::module_& m);
+void define_custom(py::module_& m);
 void define_filter(py::module_& m);
 void define_alpha_beta(py::module_& filter);
 void define_smoothers(py::module_& filter);

@@ -359,7 +359,7 @@ def test_a_row_of_nan_is_a_missed_scan():
     assert (np.delete(result.status, 3) == int(wl.Status.ok)).all()
 
 
-@pytest.mark.parametrize("bad", [[np.nan, 0.7], [5000.0, np.inf], [-np.inf, 0.7]])
+@pytest.mark.parametrize("bad", [[5000.0, np.inf], [-np.inf, 0.7]])
 def test_a_reading_that_is_not_finite_is_marked_and_changes_nothing(bad):
     z = readings()
     z[3] = bad

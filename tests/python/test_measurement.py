@@ -19,6 +19,8 @@ SENSORS = {
         range_std_m=10.0, bearing_std_rad=0.01, range_rate_std_mps=0.5
     ),
     "Position": wl.Position(position_std_m=10.0),
+    "Bearing": wl.Bearing(bearing_std_rad=0.01),
+    "Range": wl.Range(range_std_m=10.0),
 }
 
 

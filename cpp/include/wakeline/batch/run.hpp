@@ -33,6 +33,7 @@ struct RunInput {
   const double* own_m = nullptr;              ///< (T, 2) north and east of own ship, or null
   const double* own_mps = nullptr;            ///< (T, 2) velocity of own ship, or null
   const double* acceleration_mps2 = nullptr;  ///< (T, 2) known acceleration, or null
+  const double* covariance = nullptr;         ///< (R, T, M, M) of readings, or null
   const RadiusGate* gate = nullptr;  ///< of a `PositionSensor`, about its prediction; or null
   const ChiSquareGate* nis_gate = nullptr;  ///< of the innovation; or null
   /// Readings outside the gate in a row, after which it stays open until one is inside; 0: never.
@@ -258,7 +259,12 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       z[m] = lanes.load(in.z, kM, scan, static_cast<std::size_t>(m));
       missed = missed && z[m] != z[m];
     }
-    const Sensor seen = seen_from(sensor, in, scan);
+    Sensor seen = seen_from(sensor, in, scan);
+    if constexpr (requires { seen.set_covariance(in.covariance); })
+      if (in.covariance != nullptr) {
+        const auto numbers = static_cast<std::size_t>(seen.numbers());
+        seen.set_covariance(lanes.place(in.covariance, numbers * numbers, 0, scan));
+      }
     const Mask read = ok(status) && !missed;
     const Mask open = gate.open();
     Mask outside = false;
@@ -278,7 +284,9 @@ void run_side_by_side(Estimator& estimator, const Sensor& sensor, const RunInput
       const Mask done = ok(taken.status) && used;
       if (in.nis_gate != nullptr) {
         // Some estimators use only the position of a reading.
-        const Mask beyond = done && !gate.contains(taken.nis, int(taken.innovation.size()));
+        int dof = int(taken.innovation.size());
+        if constexpr (requires { seen.numbers_in(z); }) dof = seen.numbers_in(z);
+        const Mask beyond = done && !gate.contains(taken.nis, dof);
         outside = outside || beyond;
         if (any(beyond && !open)) {
           assign_apart(estimator, *before);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -12,9 +13,9 @@ namespace wakeline {
 
 /// A belief whose layout is known at run time, without heap.
 struct AnyBelief {
-  using Mean = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStates, 1>;
+  using Mean = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kStateRoom, 1>;
   using Covariance =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates>;
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kStateRoom, kStateRoom>;
 
   StateLayout layout = StateLayout::kKinematics;
   Mean mean = Vec<double, 4>::Zero();
@@ -36,20 +37,61 @@ AnyBelief any_belief(const Gaussian<kStatesOf<Motion>>& belief) noexcept {
 }
 
 /// Rows of a layout in another one: `rows(from, to)[i]` is where `from` holds row i of `to`, or -1.
+/// Of a layout made at run time they are valid until the next call in this thread.
 inline const auto& rows_between(StateLayout from, StateLayout to) noexcept {
   using RowsOf = std::array<int, static_cast<std::size_t>(kMaxStates)>;
   constexpr auto kLayouts = static_cast<std::size_t>(kStateLayouts.count);
-  static constexpr auto kRows = [] {
+  constexpr auto rows_in = [](const StateRows& from_rows, const StateRows& to_rows) {
+    RowsOf rows{};
+    for (int i = 0; i < to_rows.states; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      rows[k] = from_rows.row_of(to_rows.components[k]);
+    }
+    return rows;
+  };
+  static constexpr auto kRows = [rows_in] {
     std::array<std::array<RowsOf, kLayouts>, kLayouts> rows{};
     for (std::size_t a = 0; a < kLayouts; ++a)
       for (std::size_t b = 0; b < kLayouts; ++b)
-        for (int i = 0; i < states_of(StateLayout(b)); ++i) {
-          const auto k = static_cast<std::size_t>(i);
-          rows[a][b][k] = rows_of(StateLayout(a)).row_of(rows_of(StateLayout(b)).components[k]);
-        }
+        rows[a][b] = rows_in(kStateLayouts.rows[a], kStateLayouts.rows[b]);
     return rows;
   }();
-  return kRows[static_cast<std::size_t>(from)][static_cast<std::size_t>(to)];
+  const auto search = [&]() __attribute__((cold, noinline))->const RowsOf& {
+    static thread_local RowsOf rows;
+    rows = rows_in(rows_of(from), rows_of(to));
+    return rows;
+  };
+  if (is_of_catalog(from) && is_of_catalog(to)) [[likely]]
+    return kRows[static_cast<std::size_t>(from)][static_cast<std::size_t>(to)];
+  return search();
+}
+
+/// True where a state holds position and velocity.
+inline bool has_kinematics(StateLayout layout) noexcept {
+  const auto& row = rows_between(layout, StateLayout::kKinematics);
+  return std::none_of(row.begin(), row.begin() + 4, [](int from) { return from < 0; });
+}
+
+/// A belief with independent states, N(0, 1), to fill up `kMaxStates`: what is computed of it is
+/// that of the belief, whatever its size.
+inline Gaussian<kMaxStates> filled_up(const AnyBelief& belief) noexcept {
+  Gaussian<kMaxStates> filled;
+  for (int j = 0; j < belief.states(); ++j) {
+    filled.mean[j] = belief.mean[j];
+    for (int i = 0; i < belief.states(); ++i) filled.covariance(i, j) = belief.covariance(i, j);
+  }
+  return filled;
+}
+
+/// The reverse.
+inline AnyBelief cut_to(StateLayout layout, const Gaussian<kMaxStates>& filled) noexcept {
+  const int states = states_of(layout);
+  AnyBelief belief{layout, AnyBelief::Mean(states), AnyBelief::Covariance(states, states)};
+  for (int j = 0; j < states; ++j) {
+    belief.mean[j] = filled.mean[j];
+    for (int i = 0; i < states; ++i) belief.covariance(i, j) = filled.covariance(i, j);
+  }
+  return belief;
 }
 
 // What mixing asks of a belief; see `StateBelief`.

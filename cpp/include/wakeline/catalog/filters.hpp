@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "wakeline/catalog/belief.hpp"
+#include "wakeline/catalog/custom_filter.hpp"
+#include "wakeline/catalog/custom_sensor.hpp"
 #include "wakeline/catalog/motions.hpp"
 #include "wakeline/catalog/sensors.hpp"
 #include "wakeline/catalog/type_list.hpp"
@@ -60,6 +62,11 @@ class AnyFilterOf {
     return correct_by(model_of(sensor), reading);
   }
 
+  /// The same of a sensor that is made at run time, or of a reading of which a part is missing. An
+  /// alpha-beta filter misses it; a square-root filter corrects as `Ukf`.
+  Correction<kMostNumbers> correct(const RuntimeSensor& sensor,
+                                   const Gaussian<kMostNumbers>& reading) noexcept;
+
   void archive(Archive& fields);
 
   [[nodiscard]] AnyBelief estimate() const noexcept;
@@ -95,8 +102,9 @@ struct FiltersOver<TypeList<Motion...>> {
 };
 using MotionFilters = typename FiltersOver<Motions>::Type;
 
-/// Those over the motion models of the catalogue, and the alpha-beta filter.
-using Filters = Joined<MotionFilters, TypeList<AlphaBeta<>>>;
+/// Those over the motion models of the catalogue, the alpha-beta filter, and filters over a motion
+/// model that is made at run time.
+using Filters = Joined<MotionFilters, TypeList<AlphaBeta<>, CustomFilter>>;
 
 /// One of the filters of the catalogue.
 using AnyFilter = AnyFilterOf<Filters>;
@@ -231,12 +239,16 @@ template <class FilterList>
 Status AnyFilterOf<FilterList>::start(const AnyBelief& belief) noexcept {
   return std::visit(
       [&]<class Filter>(Filter& filter) {
-        if (belief.layout == kLayoutOf<typename Filter::Motion>)
-          return filter.start(belief.template fixed<Filter::kStates>());
-        if constexpr (Filter::kStates != 4)
-          if (belief.layout == StateLayout::kKinematics)
-            return filter.start(belief.template fixed<4>());
-        return Status::kNotStarted;
+        if constexpr (std::is_same_v<Filter, CustomFilter>) {
+          return filter.start(belief);
+        } else {
+          if (belief.layout == kLayoutOf<typename Filter::Motion>)
+            return filter.start(belief.template fixed<Filter::kStates>());
+          if constexpr (Filter::kStates != 4)
+            if (belief.layout == StateLayout::kKinematics)
+              return filter.start(belief.template fixed<4>());
+          return Status::kNotStarted;
+        }
       },
       filter_);
 }
@@ -250,7 +262,10 @@ template <class FilterList>
 Status AnyFilterOf<FilterList>::assign(const AnyBelief& belief) noexcept {
   return std::visit(
       [&]<class Filter>(Filter& filter) {
-        return filter.assign(belief.template fixed<Filter::kStates>());
+        if constexpr (std::is_same_v<Filter, CustomFilter>)
+          return filter.assign(belief);
+        else
+          return filter.assign(belief.template fixed<Filter::kStates>());
       },
       filter_);
 }
@@ -283,6 +298,42 @@ Correction<Sensor::kMeasurements> AnyFilterOf<FilterList>::correct_by(
 }
 
 template <class FilterList>
+Correction<kMostNumbers> AnyFilterOf<FilterList>::correct(
+    const RuntimeSensor& sensor, const Gaussian<kMostNumbers>& reading) noexcept {
+  if (!started()) return {};
+  Correction<kMostNumbers> of_whole;
+  if (sensor.visit_whole(reading,
+                         [&]<class Sensor, int M>(const Sensor& one, const Vec<double, M>& z) {
+                           const Correction<M> correction = correct(one, one.observe(z));
+                           of_whole.status = correction.status;
+                           of_whole.innovation.template head<M>() = correction.innovation;
+                           of_whole.innovation_covariance.template topLeftCorner<M, M>() =
+                               correction.innovation_covariance;
+                           of_whole.nis = correction.nis;
+                           of_whole.peak = correction.peak;
+                         }))
+    return of_whole;
+  return std::visit(
+      [&]<class Filter>(Filter& filter) -> Correction<kMostNumbers> {
+        if constexpr (std::is_same_v<Filter, CustomFilter>) {
+          return filter.correct(sensor, reading);
+        } else if constexpr (std::is_same_v<Filter, AlphaBeta<>>) {
+          return {.status = Status::kMissed};
+        } else {
+          const Unscented* unscented = nullptr;
+          if constexpr (requires { filter.unscented(); }) unscented = &filter.unscented();
+          AnyBelief belief = estimate();
+          Correction<kMostNumbers> correction =
+              corrected(RuntimeInnovation(sensor, reading, unscented, belief), belief);
+          if (correction.status == Status::kOk)
+            correction.status = filter.assign(belief.template fixed<Filter::kStates>());
+          return correction;
+        }
+      },
+      filter_);
+}
+
+template <class FilterList>
 void AnyFilterOf<FilterList>::archive(Archive& fields) {
   std::visit([&](auto& filter) { filter.archive(fields); }, filter_);
 }
@@ -290,8 +341,11 @@ void AnyFilterOf<FilterList>::archive(Archive& fields) {
 template <class FilterList>
 AnyBelief AnyFilterOf<FilterList>::estimate() const noexcept {
   return std::visit(
-      []<class Filter>(const Filter& filter) {
-        return any_belief<typename Filter::Motion>(filter.estimate());
+      []<class Filter>(const Filter& filter) -> AnyBelief {
+        if constexpr (std::is_same_v<Filter, CustomFilter>)
+          return filter.estimate();
+        else
+          return any_belief<typename Filter::Motion>(filter.estimate());
       },
       filter_);
 }
@@ -303,8 +357,14 @@ bool AnyFilterOf<FilterList>::started() const noexcept {
 
 template <class FilterList>
 StateLayout AnyFilterOf<FilterList>::layout() const noexcept {
-  return std::visit([]<class Filter>(const Filter&) { return kLayoutOf<typename Filter::Motion>; },
-                    filter_);
+  return std::visit(
+      []<class Filter>(const Filter& filter) {
+        if constexpr (std::is_same_v<Filter, CustomFilter>)
+          return filter.motion()->layout();
+        else
+          return kLayoutOf<typename Filter::Motion>;
+      },
+      filter_);
 }
 
 template <class FilterList>
@@ -336,6 +396,9 @@ AnyFilterBankOf<FilterList>::AnyFilterBankOf(const std::vector<Filter>& filters)
     slots_.push_back({filter, filter.estimate(), true});
     same = same && filter.layout() == filters.front().layout();
   }
+  for (const Filter& filter : filters)
+    if (!same && !has_kinematics(filter.layout()))
+      reject("filters of different states must all have [x, vx, y, vy] among their states");
   if (same) empty_ = filters.front().estimate();
   empty_ = zero_like(empty_);
 }

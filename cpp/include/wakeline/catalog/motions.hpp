@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <mutex>
+#include <string>
 #include <type_traits>
 
 #include "wakeline/catalog/type_list.hpp"
+#include "wakeline/core/require.hpp"
 #include "wakeline/motion/concept.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/constant_velocity.hpp"
@@ -30,10 +33,13 @@ struct IsLinear : std::bool_constant<LinearMotionModel<Motion>> {};
 /// One of those that are linear.
 using AnyLinearMotion = AsVariant<Selected<IsLinear, Motions>>;
 
-/// The greatest number of states among the motion models.
+/// The greatest number of states of a motion model that is chosen at run time, or made then.
 inline constexpr int kMaxStates = []<class... Motion>(TypeList<Motion...>) {
-  return std::max({4, kStatesOf<Motion>...});
+  return std::max({9, kStatesOf<Motion>...});
 }(Motions{});
+
+/// Room for as many: an even number, so that Eigen aligns vectors and matrices of it.
+inline constexpr int kStateRoom = kMaxStates + kMaxStates % 2;
 
 /// What each row of a state of one of the motion models holds.
 struct StateRows {
@@ -54,7 +60,8 @@ struct StateRows {
   constexpr bool operator==(const StateRows&) const = default;
 };
 
-/// The state layouts of the motion models: 0 is `[x, vx, y, vy]`.
+/// The state layouts of the motion models: 0 is `[x, vx, y, vy]`. Models made at run time have
+/// others; see `CustomLayouts`.
 enum class StateLayout : std::uint8_t { kKinematics };
 
 struct StateLayouts {
@@ -75,8 +82,55 @@ inline constexpr StateLayouts kStateLayouts = [] {
   return layouts;
 }();
 
+/// The layouts of models made at run time, which follow those of the catalogue.
+class CustomLayouts {
+ public:
+  static constexpr int kMost = 64;
+
+  /// The layout with these rows, added if it is new. Throws `std::invalid_argument` when there are
+  /// `kMost` others.
+  static StateLayout of(const StateRows& rows) {
+    for (int k = 0; k < kStateLayouts.count; ++k)
+      if (kStateLayouts.rows[static_cast<std::size_t>(k)] == rows) return StateLayout(k);
+    Table& all = table();
+    const std::lock_guard hold(all.mutex);
+    const int count = all.count;
+    const auto end = all.rows.begin() + count;
+    const auto found = std::find(all.rows.begin(), end, rows);
+    const auto layout = StateLayout(kStateLayouts.count + (found - all.rows.begin()));
+    if (found != end) return layout;
+    if (count == kMost)
+      reject("custom motion models must have at most " + std::to_string(kMost) +
+             " different states in one program");
+    *found = rows;
+    all.count = count + 1;
+    return layout;
+  }
+
+  static const StateRows& rows(StateLayout layout) noexcept {
+    return table().rows[static_cast<std::size_t>(static_cast<int>(layout) - kStateLayouts.count)];
+  }
+
+ private:
+  struct Table {
+    std::mutex mutex;
+    int count = 0;
+    std::array<StateRows, static_cast<std::size_t>(kMost)> rows = {};
+  };
+  static Table& table() noexcept {
+    static Table all;
+    return all;
+  }
+};
+
+/// True for the layout of a motion model of the catalogue.
+constexpr bool is_of_catalog(StateLayout layout) noexcept {
+  return static_cast<int>(layout) < kStateLayouts.count;
+}
+
 constexpr const StateRows& rows_of(StateLayout layout) noexcept {
-  return kStateLayouts.rows[static_cast<std::size_t>(layout)];
+  return is_of_catalog(layout) ? kStateLayouts.rows[static_cast<std::size_t>(layout)]
+                               : CustomLayouts::rows(layout);
 }
 
 constexpr int states_of(StateLayout layout) noexcept { return rows_of(layout).states; }

@@ -6,9 +6,11 @@
 #include <variant>
 
 #include "wakeline/catalog/type_list.hpp"
+#include "wakeline/measurement/bearing.hpp"
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/measurement/position.hpp"
+#include "wakeline/measurement/range.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
 #include "wakeline/measurement/range_bearing_doppler.hpp"
 
@@ -19,6 +21,9 @@ using Sensors = TypeList<RangeBearing, ConvertedRangeBearing, Position, RangeBea
 
 /// One of them.
 using AnySensor = AsVariant<Sensors>;
+
+/// The sensors that measure a part of a position, each one number; see `RuntimeSensor`.
+using PartSensors = TypeList<Bearing, Range>;
 
 /// What a filter corrects by for a sensor: of a direct one only the reading matters, unless its
 /// errors are those at the prediction, so that a converted plot serves all direct ones.
