@@ -55,6 +55,15 @@ class CustomSensor {
 /// from the prediction, unless `set_covariance` has given them.
 template <class SensorList>
 class RuntimeSensorOf {
+  /// The components that a sensor reads, as it takes them.
+  template <class Sensor>
+  static decltype(auto) read(const Sensor&, const AnyBelief::Mean& x) noexcept {
+    if constexpr (DeclaresSizes<Sensor>)
+      return Vec<double, kReadsOf<Sensor>>(x);
+    else
+      return (x);
+  }
+
  public:
   static constexpr int kMeasurements = kMostNumbers;
 
@@ -231,14 +240,6 @@ class RuntimeSensorOf {
  private:
   template <class Sensor>
   using NumbersOf = Vec<double, Sensor::kMeasurements>;
-
-  template <DeclaresSizes Sensor>
-  static Vec<double, kReadsOf<Sensor>> read(const Sensor&, const AnyBelief::Mean& x) noexcept {
-    return x;
-  }
-  static const AnyBelief::Mean& read(const CustomSensor&, const AnyBelief::Mean& x) noexcept {
-    return x;
-  }
 
   AsVariant<Joined<SensorList, TypeList<std::shared_ptr<const CustomSensor>>>> sensor_;
   Mat<double, kMostNumbers, kMostNumbers> covariance_ =
