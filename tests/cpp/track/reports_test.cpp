@@ -199,6 +199,8 @@ TEST(Reports, OneIdentityOfTwoVesselsIsOnNeither) {
   alone.run(240.0);
   scene.run(240.0);
   EXPECT_GE(scene.count(TrackEvent::kIdentityJumps), 1);
+  EXPECT_EQ(scene.tracker.find("ais", vessels[0].identity), nullptr);
+  EXPECT_EQ(scene.identified, 0.0) << "from a minute on";
   EXPECT_LT(scene.rms_m(), 1.05 * alone.rms_m());
   EXPECT_EQ(tracks_of(scene.tracker, true).size(), 2u);
 }

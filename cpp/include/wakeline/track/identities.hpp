@@ -79,11 +79,17 @@ struct Identity {
   Vec<double, 2> position_m = Vec<double, 2>::Zero();
   double position_std_m = 0.0;
   bool disagrees = false;  ///< its last report was far from the track that it is
-  bool jumps = false;      ///< it was lately where a vessel cannot run after its report before
+  int leaps = 0;           ///< reports where a vessel cannot run to, since it was steady
   int in_a_row = 0;        ///< reports between which a vessel can have run
   std::array<Candidate, kMostCandidates> candidates = {};
 
   [[nodiscard]] bool reported() const noexcept { return std::isfinite(time_s); }
+
+  /// Whether it was lately where a vessel cannot run after its report before.
+  [[nodiscard]] bool jumps() const noexcept { return leaps > 0; }
+
+  /// Whether it is reported by several vessels: one wrong position is two leaps, there and back.
+  [[nodiscard]] bool is_of_several() const noexcept { return leaps > 2; }
 
   /// Whether a report is where a vessel under the speed limit can be after the last one.
   [[nodiscard]] bool can_be_at(const PositionReport& report, double max_speed_mps) const noexcept {
@@ -99,11 +105,12 @@ struct Identity {
     return interval_s > 0.0 ? std::clamp(kIntervals * interval_s, kLeast_s, kMost_s) : kFirst_s;
   }
 
-  /// Notes a report.
+  /// Notes a report. An identity is steady again after as many in a row as it leapt.
   void note(const PositionReport& report, double max_speed_mps) noexcept {
-    constexpr int kSteady = 2;
+    constexpr int kSteady = 2, kMostLeaps = 12;
     in_a_row = can_be_at(report, max_speed_mps) ? in_a_row + 1 : 0;
-    jumps = reported() && in_a_row < (jumps ? kSteady : 1);
+    if (reported() && in_a_row == 0) leaps = std::min(leaps + 1, kMostLeaps);
+    if (in_a_row >= std::max(kSteady, leaps)) leaps = 0;
     interval_s = reported() ? report.time_s - time_s : 0.0;
     time_s = report.time_s;
     position_m = report.position_m;
@@ -151,7 +158,7 @@ struct Identity {
     fields(position_m);
     fields(position_std_m);
     fields(disagrees);
-    fields(jumps);
+    fields(leaps);
     fields(in_a_row);
     for (Candidate& candidate : candidates) candidate.archive(fields);
   }

@@ -36,7 +36,7 @@ class ReportStages {
       if (const int slot = picture_.slot_of_identity(number); slot >= 0)
         picture_.tracks.at(slot).identity = -1;
 
-    const bool jumped_before = identity.jumps;
+    const bool jumped_before = identity.jumps();
     identity.note(report, state().radar.max_speed_mps);
     weigh_identity(report, identity);
     Track* track = identify(number);
@@ -48,7 +48,7 @@ class ReportStages {
         return {Status::kOk, track->id, picture_.events};
       }
     }
-    if (identity.jumps && !jumped_before)
+    if (identity.jumps() && !jumped_before)
       picture_.announce(TrackEvent::kIdentityJumps, track, identity);
     if (track == nullptr) return {Status::kGated, 0, picture_.events};
     const bool agrees =
@@ -57,7 +57,7 @@ class ReportStages {
       picture_.announce(TrackEvent::kIdentityDisagrees, track, identity);
     identity.disagrees = !agrees;
     const double probability = picture_.identity_probability(*track);
-    if (!agrees || identity.jumps || probability < kSure)
+    if (!agrees || identity.jumps() || probability < kSure)
       return {Status::kGated, track->id, picture_.events};
     take_report(report, identity, probability, *track);
     return {Status::kOk, track->id, picture_.events};
@@ -157,13 +157,14 @@ class ReportStages {
     }
   }
 
-  /// Gives the identity to the track that it is believed to be; null when there is none.
+  /// Gives the identity to the track that it is believed to be; null when there is none, or several
+  /// vessels report it.
   Track* identify(int number) noexcept {
     Identity& identity = picture_.identities[number];
     const int slot = picture_.slot_of_identity(number);
     Track* before = slot < 0 ? nullptr : &picture_.tracks.at(slot);
     const Identity::Candidate* best = identity.likeliest();
-    Track* now = best != nullptr && identity.probability(*best) > 0.5
+    Track* now = best != nullptr && identity.probability(*best) > 0.5 && !identity.is_of_several()
                      ? &picture_.tracks.at(best->slot)
                      : nullptr;
     if (now == before) return now;
