@@ -31,9 +31,20 @@ class Taken {
   }
 }
 
+/** Places beside a symbol for a label of each of its sizes, the best first: [dx, dy, number of the size]. */
+function* placesOf({ sizes }) {
+  for (const [k, [width, height]] of sizes.entries())
+    for (const far of [NEAR, ...FAR])
+      for (const [sx, sy] of SIDES) {
+        const dx = sx > 0 ? far : sx < 0 ? -far - width : -width / 2;
+        const dy = sy > 0 ? far - 6 : sy < 0 ? -far - height + 6 : -height / 2;
+        yield [dx, dy, k];
+      }
+}
+
 /**
- * Offsets of labels from their symbols.
- * items: [{id, x, y, width, height}] in order of importance; symbols: [{x, y, radius}];
+ * Offsets of labels from their symbols, with the number of the size that has room.
+ * items: [{id, x, y, sizes: [[width, height], ...]}] in order of importance, the wanted size first; symbols: [{x, y, radius}];
  * covered: boxes [x0, y0, x1, y1] of what lies over the picture; before: Map of earlier offsets, tried first so that labels stay. Those without room get none.
  */
 export function placeLabels(items, symbols, covered, before, bounds, most = 100) {
@@ -42,23 +53,17 @@ export function placeLabels(items, symbols, covered, before, bounds, most = 100)
   for (const { x, y, radius } of symbols) taken.add([x - radius, y - radius, x + radius, y + radius]);
   const offsets = new Map();
   for (const item of items.slice(0, most)) {
-    const box = ([dx, dy]) => [item.x + dx, item.y + dy, item.x + dx + item.width, item.y + dy + item.height];
+    const box = ([dx, dy, k]) => [item.x + dx, item.y + dy, item.x + dx + item.sizes[k][0], item.y + dy + item.sizes[k][1]];
     const fits = (offset) => {
       const [x0, y0, x1, y1] = box(offset);
       return x0 >= bounds[0] && y0 >= bounds[1] && x1 <= bounds[2] && y1 <= bounds[3] && !taken.meets([x0, y0, x1, y1]);
     };
     const tried = before.get(item.id);
-    let chosen = tried && fits(tried) ? tried : null;
-    for (const far of chosen ? [] : [NEAR, ...FAR]) {
-      for (const [sx, sy] of SIDES) {
-        const dx = sx > 0 ? far : sx < 0 ? -far - item.width : -item.width / 2;
-        const dy = sy > 0 ? far - 6 : sy < 0 ? -far - item.height + 6 : -item.height / 2;
-        if (fits([dx, dy])) {
-          chosen = [dx, dy];
-          break;
-        }
-      }
-      if (chosen) break;
+    let chosen = tried && tried[2] === 0 && fits(tried) ? tried : null;
+    for (const place of chosen ? [] : placesOf(item)) {
+      if (!fits(place)) continue;
+      chosen = place;
+      break;
     }
     if (!chosen) continue;
     offsets.set(item.id, chosen);

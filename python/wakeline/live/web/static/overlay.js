@@ -505,8 +505,9 @@ export class Overlay {
     for (const one of [...targets, ...vessels]) {
       if (!due && !this.offsets.has(one.id)) continue;
       const lines = this.linesOf(one);
-      const width = Math.max(...lines.map((line) => this.widthOf(line))) + 4;
-      items.push({ one, lines, id: one.id, x: one.x, y: one.y, width, height: 14 * lines.length, rank: rank(one), near: near(one) });
+      // Where all lines have no room, the first alone may have.
+      const sizes = [...new Set([lines.length, 1])].map((n) => [Math.max(...lines.slice(0, n).map((line) => this.widthOf(line))) + 4, 14 * n]);
+      items.push({ one, lines, id: one.id, x: one.x, y: one.y, sizes, rank: rank(one), near: near(one) });
     }
     if (due) {
       this.labels_ms = now_ms;
@@ -518,9 +519,10 @@ export class Overlay {
     for (const item of items) {
       const offset = this.offsets.get(item.id);
       if (!offset) continue;
+      const [width, height] = item.sizes[Math.min(offset[2], item.sizes.length - 1)];
       const [x, y] = [item.x + offset[0], item.y + offset[1]];
       const color = item.one.isAis ? palette.ais : item.one.danger || item.one.alarmed ? palette.danger : palette.label;
-      const [nx, ny] = [Math.max(x, Math.min(item.x, x + item.width)), Math.max(y, Math.min(item.y, y + item.height))];
+      const [nx, ny] = [Math.max(x, Math.min(item.x, x + width)), Math.max(y, Math.min(item.y, y + height))];
       const away = Math.hypot(nx - item.x, ny - item.y);
       if (away > 22) {
         c.strokeStyle = color;
@@ -530,7 +532,7 @@ export class Overlay {
         c.lineTo(nx, ny);
         c.stroke();
       }
-      item.lines.forEach((line, k) => this.text(line, x + 2, y + 7 + 14 * k, color, { font: FONT, align: "left" }));
+      item.lines.slice(0, height / 14).forEach((line, k) => this.text(line, x + 2, y + 7 + 14 * k, color, { font: FONT, align: "left" }));
     }
   }
 
