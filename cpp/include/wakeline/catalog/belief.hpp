@@ -96,9 +96,12 @@ inline AnyBelief cut_to(StateLayout layout, const Gaussian<kMaxStates>& filled) 
 
 // What mixing asks of a belief; see `StateBelief`.
 
+/// Keeps a belief as it is: `AnyBelief` has no triangle to leave out.
 inline void keep_lower(const AnyBelief& belief, AnyBelief& kept) noexcept { kept = belief; }
+/// Nothing is missing in an `AnyBelief`.
 inline void complete(AnyBelief&) noexcept {}
 
+/// A belief of the same layout with mean and covariance of zero.
 inline AnyBelief zero_like(const AnyBelief& belief) noexcept {
   AnyBelief zero = belief;
   zero.mean.setZero();
@@ -106,6 +109,7 @@ inline AnyBelief zero_like(const AnyBelief& belief) noexcept {
   return zero;
 }
 
+/// Adds the weighted mean of a part; components that it lacks are those of `own`.
 inline void add_mean(AnyBelief& sum, double weight, const AnyBelief& part,
                      const AnyBelief& own) noexcept {
   const auto& row = rows_between(part.layout, own.layout);
@@ -126,6 +130,7 @@ void add_spread_within(AnyBelief& sum, double weight, const AnyBelief& part) noe
     for (int i = 0; i < N; ++i) covariance[N * j + i] += weight * (p[N * j + i] + d[i] * d[j]);
 }
 
+/// Adds the weighted covariance of a part and the spread of its mean about that of the sum.
 inline void add_spread(AnyBelief& sum, double weight, const AnyBelief& part,
                        const AnyBelief& own) noexcept {
   if (part.layout == own.layout) {

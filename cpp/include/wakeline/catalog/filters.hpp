@@ -88,6 +88,7 @@ class AnyFilterOf {
   bool linear_;
 };
 
+/// Gives the filter another turn rate, rad/s, positive to starboard.
 template <class FilterList>
 void set_turn_rate(AnyFilterOf<FilterList>& filter, double turn_rate_rad_s) noexcept {
   filter.set_turn_rate(turn_rate_rad_s);

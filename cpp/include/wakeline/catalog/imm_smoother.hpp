@@ -111,6 +111,7 @@ Status smooth_any_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief,
       any.variant());
 }
 
+/// Smooths a belief by the later one of the same filter.
 template <class FilterList, class... Known>
 Status smooth_pair(const AnyFilterOf<FilterList>& any, AnyBelief& belief, const AnyBelief& later,
                    double dt_s, const Known&... acceleration_mps2) noexcept {

@@ -64,6 +64,7 @@ struct StateRows {
 /// others; see `CustomLayouts`.
 enum class StateLayout : std::uint8_t { kKinematics };
 
+/// The layouts of all motion models, each once.
 struct StateLayouts {
   int count = 0;
   std::array<StateRows, static_cast<std::size_t>(Motions::kSize + 1)> rows = {};
@@ -128,11 +129,13 @@ constexpr bool is_of_catalog(StateLayout layout) noexcept {
   return static_cast<int>(layout) < kStateLayouts.count;
 }
 
+/// The components of a layout, in their order.
 constexpr const StateRows& rows_of(StateLayout layout) noexcept {
   return is_of_catalog(layout) ? kStateLayouts.rows[static_cast<std::size_t>(layout)]
                                : CustomLayouts::rows(layout);
 }
 
+/// The number of components of a layout.
 constexpr int states_of(StateLayout layout) noexcept { return rows_of(layout).states; }
 
 /// The layout of one of the motion models.

@@ -72,6 +72,7 @@ constexpr Rule from_to_below(double low, double high) noexcept {
 constexpr Rule above_to(double low, double high) noexcept {
   return {.low = low, .high = high, .above_low = true};
 }
+/// From `low` on.
 constexpr Rule at_least(double low) noexcept { return {.low = low, .high = kLargest}; }
 
 /// The largest magnitude of a quantity by its unit: beyond what a radar, a vessel or a study has,
@@ -174,6 +175,7 @@ struct Field {
   const char* sentence;  ///< what it is
 };
 
+/// A line of a field table: name, member, rule, unit and one sentence.
 template <class Struct, class Value>
 constexpr Field<Struct, Value> field(const char* name, Value Struct::*member, const Rule& rule,
                                      const char* unit, const char* sentence) noexcept {

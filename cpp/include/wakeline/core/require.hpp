@@ -41,10 +41,12 @@ inline void require(bool condition, const char* name, const char* wanted, double
   if (!condition) reject_value(name, wanted, value);
 }
 
+/// Throws `std::invalid_argument` unless the value is finite and not negative.
 inline void require_not_negative(const char* name, double value) {
   require(value >= 0.0 && std::isfinite(value), name, "finite and not negative", value);
 }
 
+/// Throws `std::invalid_argument` unless the value is finite and positive.
 inline void require_positive(const char* name, double value) {
   require(value > 0.0 && std::isfinite(value), name, "finite and positive", value);
 }
@@ -54,10 +56,12 @@ inline void require_time(const char* name, double time_s) {
   require(time_s >= 1e-3 && time_s <= 1e12, name, "0.001 s to 1e12 s", time_s);
 }
 
+/// Throws `std::invalid_argument` unless the value is finite.
 inline void require_finite(const char* name, double value) {
   require(std::isfinite(value), name, "finite", value);
 }
 
+/// Throws `std::invalid_argument` unless the value is between 0 and 1.
 inline void require_probability(const char* name, double value) {
   require(value >= 0.0 && value <= 1.0, name, "a probability between 0 and 1", value);
 }

@@ -45,6 +45,7 @@ constexpr const char* to_string(Status status) noexcept {
   return "unknown";
 }
 
+/// Whether a step was done.
 constexpr bool ok(Status status) noexcept { return status == Status::kOk; }
 
 /// The first of the two that is not `kOk`.
@@ -55,7 +56,9 @@ constexpr Status ok_or(bool condition, Status otherwise) noexcept {
   return condition ? Status::kOk : otherwise;
 }
 
+/// The status of a lane; a `Status` has one.
 constexpr Status lane(Status status, int) noexcept { return status; }
+/// The status itself: it has one lane.
 constexpr Status first_failure_of_lanes(Status status) noexcept { return status; }
 
 /// A `Status` for each lane of a pack.

@@ -50,6 +50,7 @@ template <class Mask, class Scalar, int Rows, int Cols>
       [&](int k) { target.data()[k] = select(condition, value.data()[k], target.data()[k]); });
 }
 
+/// Replaces a belief where the condition holds.
 template <class Mask, int N, class Scalar>
 [[gnu::always_inline]] inline void assign_where(const Mask& condition, Gaussian<N, Scalar>& target,
                                                 const Gaussian<N, Scalar>& value) noexcept {
@@ -92,6 +93,7 @@ template <int N, class Scalar, class OfLane>
     gather_lanes<N * N>([&](int k) { return of_lane(k).covariance.data(); }, to.covariance.data());
   }
 }
+/// Copies the first `count` lanes to the beliefs `of_lane(k)`.
 template <int N, class Scalar, class OfLane>
 [[gnu::always_inline]] inline void scatter_lanes(const Gaussian<N, Scalar>& from, int count,
                                                  const OfLane& of_lane) noexcept {

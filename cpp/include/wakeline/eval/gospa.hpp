@@ -42,6 +42,7 @@ class Gospa {
  public:
   using Matrix = Eigen::MatrixXd;
 
+  /// Cut-off, order, and the share of a missed target.
   struct Options {
     double cutoff_m = 50.0;
     double order = 2.0;  ///< p >= 1

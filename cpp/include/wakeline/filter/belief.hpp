@@ -99,6 +99,7 @@ constexpr Rows<Sensor::kReads.size()> rows_read(
   return rows_of(components, Sensor::kReads);
 }
 
+/// Names what a sensor lacks where a filter cannot take it.
 template <class Sensor, class Filter>
 constexpr void check_sensor() noexcept {
   static_assert(

@@ -68,6 +68,7 @@ enum class EchoChoice : std::uint8_t {
   kStrongest,  ///< the one with the largest total weight
 };
 
+/// Names of the choices.
 constexpr std::array<Word<EchoChoice>, 3> words_of(EchoChoice) noexcept {
   return {{{"all", EchoChoice::kAll},
            {"nearest", EchoChoice::kNearest},

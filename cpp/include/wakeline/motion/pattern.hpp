@@ -42,6 +42,7 @@ template <class Motion>
 requires requires { Motion::kPattern; }
 inline constexpr Pattern<kStatesOf<Motion>> kPatternOf<Motion> = Motion::kPattern;
 
+/// Throws `std::invalid_argument`: an element is not what the pattern says.
 [[noreturn]] inline void reject_pattern(int row, int column, double wanted, double got,
                                         const char* where, double step_s) {
   reject("the kPattern of this motion model must be true: it says " + number_text(wanted) +

@@ -190,6 +190,7 @@ class AdaptiveGridImm : public TurnGridImm<BankType> {
   AdaptiveGrid grid_;
 };
 
+/// Over three filters of the given kind.
 template <class Filter>
 AdaptiveGridImm(const AdaptiveGrid&, const ModeChain<3>&, const Filter&)
     -> AdaptiveGridImm<UniformBank<Filter, 3>>;

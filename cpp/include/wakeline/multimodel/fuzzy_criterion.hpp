@@ -18,6 +18,7 @@ namespace wakeline {
 /// Conjunction of the degrees of several conditions.
 enum class TNorm : std::uint8_t { kProduct, kMinimum };
 
+/// Names of the norms.
 constexpr std::array<Word<TNorm>, 2> words_of(TNorm) noexcept {
   return {{{"product", TNorm::kProduct}, {"minimum", TNorm::kMinimum}}};
 }

@@ -366,9 +366,11 @@ class Imm {
   Scalar transition_step_s_ = Scalar(-1);
 };
 
+/// Over the given filters.
 template <int K, class... Filters>
 Imm(const ModeChain<K>&, const Filters&...) -> Imm<FilterBank<Filters...>>;
 
+/// Over the filters of a bank.
 template <int K, class Bank>
 requires requires { Bank::kModels; }
 Imm(const ModeChain<K>&, const Bank&)->Imm<Bank>;

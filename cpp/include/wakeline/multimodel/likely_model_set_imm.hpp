@@ -200,6 +200,7 @@ class LikelyModelSetImm : public TurnGridImm<BankType> {
   LikelyModelSet set_;
 };
 
+/// Over filters of the given kind, one for each turn rate of the grid.
 template <class Filter>
 LikelyModelSetImm(const LikelyModelSet&, const ModeChain<kRuntimeModes>&, const Filter&)
     -> LikelyModelSetImm<UniformBank<Filter>>;

@@ -183,9 +183,11 @@ StatusOf<Scalar> failure_of(std::span<const Correction<M, Scalar>> parts) noexce
 /// The state of a filter beside its belief: the position in a gain schedule. Empty for most
 /// filters.
 struct NoMemory {};
+/// Nothing to replace.
 template <class Mask>
 void assign_where(const Mask&, NoMemory&, const NoMemory&) noexcept {}
 
+/// What a filter remembers besides its belief.
 template <class Filter>
 auto memory_of(const Filter& filter) noexcept {
   if constexpr (requires { filter.memory(); })
@@ -194,6 +196,7 @@ auto memory_of(const Filter& filter) noexcept {
     return NoMemory{};
 }
 
+/// Gives a filter what it remembered.
 template <class Filter, class Memory>
 void recall(Filter& filter, const Memory& memory) noexcept {
   if constexpr (requires { filter.recall(memory); }) filter.recall(memory);

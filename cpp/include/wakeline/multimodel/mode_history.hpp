@@ -343,6 +343,7 @@ class ModeHistory {
   /// The hypotheses of several rows, one by one.
   class Hypotheses {
    public:
+    /// Over the hypotheses in use.
     class Iterator {
      public:
       using iterator_concept = std::forward_iterator_tag;

@@ -27,9 +27,11 @@ enum class SwitchCarry : std::uint8_t {
               ///< estimate and the probability of the leaving one
 };
 
+/// Names of the rules.
 constexpr std::array<Word<SwitchRule>, 2> words_of(SwitchRule) noexcept {
   return {{{"symmetric", SwitchRule::kSymmetric}, {"literal", SwitchRule::kLiteral}}};
 }
+/// Names of what the places keep.
 constexpr std::array<Word<SwitchCarry>, 2> words_of(SwitchCarry) noexcept {
   return {{{"slot", SwitchCarry::kSlot}, {"identity", SwitchCarry::kIdentity}}};
 }
@@ -217,6 +219,7 @@ class SwitchingGridImm : public TurnGridImm<BankType> {
   Place centre_;
 };
 
+/// Over three filters of the given kind.
 template <class Filter>
 SwitchingGridImm(const SwitchingGrid&, const ModeChain<3>&, const Filter&)
     -> SwitchingGridImm<UniformBank<Filter, 3>>;

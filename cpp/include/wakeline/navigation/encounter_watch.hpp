@@ -91,6 +91,7 @@ struct Encounter {
   }
 };
 
+/// Whether an encounter has become dangerous or is over.
 enum class EncounterChange : std::uint8_t { kBegan, kEnded };
 
 /// The beginning or the end of an encounter, and the encounter as it was then.

@@ -289,6 +289,7 @@ class Pack {
   }
 };
 
+/// Lanes of two registers in the order `From`; those of `b` follow those of `a`.
 template <int... From, class Raw, class Integers>
 [[gnu::always_inline]] inline Raw shuffled(Raw a, Raw b, Integers) noexcept {
 #if defined(__clang__)

@@ -338,11 +338,13 @@ template <class Real, int Lanes>
   return result;
 }
 
+/// Sine of each lane, as `sin_cos`.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> sin(Pack<Real, Lanes> x) noexcept {
   return sin_cos(x).sin;
 }
 
+/// Cosine of each lane, as `sin_cos`.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> cos(Pack<Real, Lanes> x) noexcept {
   return sin_cos(x).cos;
@@ -385,6 +387,7 @@ template <class Real, int Lanes>
   return angle;
 }
 
+/// Arc tangent of each lane, as `atan2`.
 template <class Real, int Lanes>
 [[gnu::always_inline]] inline Pack<Real, Lanes> atan(Pack<Real, Lanes> x) noexcept {
   return atan2(x, Pack<Real, Lanes>(1));

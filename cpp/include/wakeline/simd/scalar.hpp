@@ -49,6 +49,7 @@ template <class Scalar>
 Scalar reciprocal(Scalar x) noexcept {
   return Scalar(1) / x;
 }
+/// One over the square root.
 template <class Scalar>
 Scalar inverse_sqrt(Scalar x) noexcept {
   using std::sqrt;
@@ -78,6 +79,7 @@ requires(kLanesIn<Scalars> == 1)
     [[gnu::always_inline]] inline void gather_lanes(const Array& array, Scalars scalars) noexcept {
   unroll<Size>([&](int k) { scalars[k] = array(0)[k]; });
 }
+/// Copies numbers of one lane to an array.
 template <int Size, class Array, class Scalars>
 requires(kLanesIn<Scalars> == 1)
     [[gnu::always_inline]] inline void scatter_lanes(Scalars scalars, int,
@@ -88,8 +90,10 @@ requires(kLanesIn<Scalars> == 1)
 /// Reductions over all lanes.
 template <class Scalar>
 requires(kLanesOf<Scalar> == 1) constexpr Scalar sum_of_lanes(Scalar x) noexcept { return x; }
+/// The least lane; a number has one.
 template <class Scalar>
 requires(kLanesOf<Scalar> == 1) constexpr Scalar least_of_lanes(Scalar x) noexcept { return x; }
+/// The greatest lane; a number has one.
 template <class Scalar>
 requires(kLanesOf<Scalar> == 1) constexpr Scalar greatest_of_lanes(Scalar x) noexcept { return x; }
 
@@ -108,10 +112,12 @@ Result fold_to(Scalar x, const Fold& fold) noexcept {
   else
     return fold(x);
 }
+/// Sum of the lanes, in packs of the width of the result.
 template <class Result, class Scalar>
 Result sum_to(Scalar x) noexcept {
   return fold_to<Result>(x, [](const auto& lanes) { return sum_of_lanes(lanes); });
 }
+/// Least of the lanes, in packs of the width of the result.
 template <class Result, class Scalar>
 Result least_to(Scalar x) noexcept {
   return fold_to<Result>(x, [](const auto& lanes) { return least_of_lanes(lanes); });
@@ -119,7 +125,9 @@ Result least_to(Scalar x) noexcept {
 
 /// Reductions over the lanes of a mask; a `bool` has one.
 constexpr bool all(bool mask) noexcept { return mask; }
+/// Whether a lane is true.
 constexpr bool any(bool mask) noexcept { return mask; }
+/// Whether no lane is true.
 constexpr bool none(bool mask) noexcept { return !mask; }
 constexpr unsigned bits_of(bool mask) noexcept { return mask; }  ///< bit k is lane k
 

@@ -110,6 +110,7 @@ enum class CalibrationVerdict : std::uint8_t {
   kPoorGeometry,  ///< its standard deviation is above the limit
 };
 
+/// Names of the verdicts.
 constexpr std::array<Word<CalibrationVerdict>, 3> words_of(CalibrationVerdict) noexcept {
   return {{{"determined", CalibrationVerdict::kDetermined},
            {"few matches", CalibrationVerdict::kFewMatches},

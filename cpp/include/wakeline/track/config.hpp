@@ -17,6 +17,7 @@ enum class Association : std::uint8_t {
   kNearest,        ///< one plot each, the best pair first
 };
 
+/// Names of the methods.
 constexpr std::array<Word<Association>, 3> words_of(Association) noexcept {
   return {{{"probabilistic", Association::kProbabilistic},
            {"global_nearest", Association::kGlobalNearest},

@@ -240,6 +240,7 @@ using TrackerInput = std::variant<SectorInput, ReportInput, PartialInput, RadarC
 /// actions as they came. Memory is taken by the constructor.
 class InputLog {
  public:
+  /// An input, when it came, what it costs and where its plots are.
   struct Entry {
     double time_s;
     std::int64_t arrival;  ///< counts all that came

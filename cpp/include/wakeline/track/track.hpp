@@ -23,6 +23,7 @@ enum class TrackStatus : std::uint8_t {
   kHeld,       ///< a target not seen for longer, or far too fast: kept, but not shown
 };
 
+/// What has happened to a track.
 enum class TrackEvent : std::uint8_t {
   kStarted,
   kConfirmed,
@@ -36,6 +37,7 @@ enum class TrackEvent : std::uint8_t {
   kIdentityShared,     ///< the vessel that reports may be on a track which another one is on
 };
 
+/// Name of an event, as in files.
 constexpr const char* to_string(TrackEvent event) noexcept {
   switch (event) {
     case TrackEvent::kStarted:
@@ -75,6 +77,7 @@ enum class LossReason : std::uint8_t {
   kCorrected,  ///< with late data there is no such track
 };
 
+/// Name of a reason, as in files.
 constexpr const char* to_string(LossReason reason) noexcept {
   switch (reason) {
     case LossReason::kNone:

@@ -40,6 +40,7 @@ namespace wakeline {
 /// The statistic of the training cells that a cell is compared with.
 enum class CfarKind : std::uint8_t { kCellAveraging, kOrderedStatistic };
 
+/// Names of the kinds.
 constexpr std::array<Word<CfarKind>, 2> words_of(CfarKind) noexcept {
   return {{{"cell_averaging", CfarKind::kCellAveraging},
            {"ordered_statistic", CfarKind::kOrderedStatistic}}};
@@ -49,6 +50,7 @@ constexpr std::array<Word<CfarKind>, 2> words_of(CfarKind) noexcept {
 /// linear one.
 enum class Noise : std::uint8_t { kExponential, kRayleigh };
 
+/// The threshold that follows the amplitudes about a cell.
 struct CfarSettings {
   CfarKind kind = CfarKind::kCellAveraging;
   int train_cells = 16;

@@ -22,6 +22,7 @@
 
 namespace wakeline {
 
+/// Thresholds, sizes and gaps of echoes.
 struct PlotExtractorSettings {
   CfarSettings cfar = {};
   int max_sweep_cells = 4096;
@@ -76,6 +77,7 @@ enum class SweepStatus : std::uint8_t {
   kInvalid = 6,          ///< rejected: see `Sweep::valid`
 };
 
+/// Why a sweep was rejected, in words.
 [[nodiscard]] constexpr bool rejected(SweepStatus status) noexcept {
   return status >= SweepStatus::kRepeated;
 }

@@ -14,6 +14,7 @@ namespace wakeline::asterix {
 namespace cat010 {
 
 inline constexpr unsigned kCategory = 10;
+/// Items in the order of their bits.
 enum Item : std::size_t {
   kSource,
   kMessageType,
@@ -81,6 +82,7 @@ inline constexpr std::array<ItemForm, kItems> kForms{{
 namespace cat034 {
 
 inline constexpr unsigned kCategory = 34;
+/// Items in the order of their bits.
 enum Item : std::size_t {
   kSource,
   kMessageType,
@@ -138,6 +140,7 @@ inline constexpr std::array<ItemForm, kItems> kForms{{
 namespace cat048 {
 
 inline constexpr unsigned kCategory = 48;
+/// Items in the order of their bits.
 enum Item : std::size_t {
   kSource,
   kTimeOfDay,
@@ -219,6 +222,7 @@ inline constexpr std::array<ItemForm, kItems> kForms{{
 namespace cat062 {
 
 inline constexpr unsigned kCategory = 62;
+/// Items in the order of their bits.
 enum Item : std::size_t {
   kSource = 0,
   kService = 2,

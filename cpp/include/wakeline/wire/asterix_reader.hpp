@@ -40,12 +40,14 @@ struct RadarRecord {
   bool test = false;               ///< a simulated or test target
 };
 
+/// What the reader has found.
 enum class AsterixEvent : std::uint8_t {
   kEnd = 0,      ///< no more in these data
   kRecord = 1,   ///< see `record()`
   kProblem = 2,  ///< data that cannot be read: see `problem()`
 };
 
+/// What is wrong with a record.
 enum class AsterixFault : std::uint8_t {
   kNone = 0,
   kBlockLength = 1,         ///< a block shorter than its header

@@ -38,6 +38,7 @@ class TtmFeed {
  public:
   static constexpr int kNumbers = 100;
 
+  /// Talker, numbers and intervals of the sentences.
   struct Config {
     std::string talker = "RA";  ///< two letters
     double interval_s =

@@ -25,6 +25,7 @@ enum class DetectionLaw : unsigned char {
   kExponential     ///< p = exp(-2 |x|/W)
 };
 
+/// Names of the laws.
 constexpr std::array<Word<DetectionLaw>, 3> words_of(DetectionLaw) noexcept {
   return {{{"definite_range", DetectionLaw::kDefiniteRange},
            {"inverse_cube", DetectionLaw::kInverseCube},
