@@ -6,7 +6,6 @@ import posixpath
 import re
 from typing import Any
 
-import cpp_reference
 import gallery
 import python_reference
 
@@ -28,9 +27,16 @@ def on_config(config: Any) -> Any:
             ]
         },
         {"Python": [{name: f"api/{name}.md"} for name in ("index", *python_reference.MODULES)]},
-        {"C++": [{name: f"cpp/{name}.md"} for name in ("index", *cpp_reference.NOUNS)]},
     ]
     return config
+
+
+def on_nav(nav: Any, config: Any, files: Any) -> Any:
+    """Add the reference of C++, which Doxygen writes beside these pages."""
+    from mkdocs.structure.nav import Link
+
+    nav.items.append(Link("C++", "cpp/index.html"))
+    return nav
 
 
 def on_files(files: Any, config: Any) -> Any:
@@ -40,7 +46,6 @@ def on_files(files: Any, config: Any) -> Any:
     folders = gallery.executed()
     for place, made in (
         ("api", python_reference.pages()),
-        ("cpp", cpp_reference.pages()),
         ("examples", gallery.pages(folders)),
     ):
         for name, text in made:
@@ -58,7 +63,7 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
 
     def led(link: re.Match[str]) -> str:
         target = posixpath.normpath(posixpath.join("cpp/docs", folder, link[2].partition("#")[0]))
-        if target.startswith("cpp/docs/"):
+        if f"{target}/".startswith("cpp/docs/"):
             return link[0]
         example = _EXAMPLE.fullmatch(target)
         if example is None:
