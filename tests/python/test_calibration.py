@@ -115,6 +115,39 @@ def test_the_offsets_of_a_simulated_radar_are_found(seed):
     assert found.time_s.determined
 
 
+def least_time_std_s(truths):
+    """Cramér-Rao bound of the time offset: all matches known, and that the vessels run straight."""
+    report_s, plot_s = np.arange(0.0, 600.0, 10.0), np.arange(0.0, 600.0, 2.5)
+    information = np.zeros((3 + 4 * len(truths), 3 + 4 * len(truths)))
+    for k, truth in enumerate(truths):
+        place = slice(3 + 4 * k, 7 + 4 * k)  # north, east and velocities at the start
+        for time_s in report_s:
+            rows = np.hstack([np.eye(2), time_s * np.eye(2)]) / 5.0
+            information[place, place] += rows.T @ rows + np.diag([0, 0, 100.0, 100.0])
+        states = truth.state_at(plot_s)
+        for time_s, (north_m, vnorth_mps, east_m, veast_mps) in zip(plot_s, states, strict=True):
+            range_m = np.hypot(north_m, east_m)
+            sight = np.array([[north_m, east_m], [-east_m, north_m]]) / range_m
+            rows = np.zeros((2, len(information)))
+            rows[:, :2] = np.diag([1.0, range_m])
+            rows[:, 2] = -sight @ [vnorth_mps, veast_mps]
+            rows[:, place] = np.hstack([sight, time_s * sight])
+            rows /= np.array([[10.0], [range_m * np.radians(0.5)]])
+            information += 0.9 * rows.T @ rows
+    size = np.sqrt(np.diag(information))
+    return np.sqrt(np.linalg.inv(information / np.outer(size, size))[2, 2]) / size[2]
+
+
+def test_the_time_offset_errs_as_little_as_any_estimator_can():
+    squares = []
+    for seed in range(16):
+        recording = scene(seed)
+        found = calibrate(recording, reports_of(recording, seed), radar=RADAR)
+        truths = list(fleet(np.random.default_rng(seed), REPORTED).values())
+        squares.append(((found.time_s.value - OFFSETS[2]) / least_time_std_s(truths)) ** 2)
+    assert 0.3 < np.mean(squares) < 1.5
+
+
 @settings(max_examples=6, deadline=None)
 @given(
     range_m=st.floats(-300.0, 300.0), bearing_deg=st.floats(-7.0, 7.0), time_s=st.floats(-1.0, 1.0)
