@@ -419,9 +419,9 @@ class FunctionSensor : public PySensor {
 /// An immutable object that copies share; `shown` is its `repr`.
 template <class Class, class... Options, class Shown>
 void define_shared(py::class_<Class, Options...>& type, const Shown& shown) {
-  type.def("__copy__", [](const py::object& one) { return one; })
+  type.def("__copy__", [](const std::shared_ptr<Class>& one) { return one; })
       .def(
-          "__deepcopy__", [](const py::object& one, const py::dict&) { return one; },
+          "__deepcopy__", [](const std::shared_ptr<Class>& one, const py::dict&) { return one; },
           py::arg("memo"));
   define_arguments(type);
 }
@@ -702,7 +702,7 @@ Bar-Shalom, Li, Kirubarajan, 10.3.1.)")
           }),
           py::arg("measure"), py::arg("covariance"), py::arg("reads") = kinematics,
           py::arg("jacobian") = py::none(), py::arg("angles") = std::vector<int>())
-      .def_property_readonly("angles", &FunctionSensor::angles)
+      .def_property_readonly("angles", &FunctionSensor::angles, "which numbers are angles")
       .def("_arguments", [](const FunctionSensor& one) {
         return Arguments()
             .with("measure", one.functions()[0])
