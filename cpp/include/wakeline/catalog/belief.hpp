@@ -21,7 +21,7 @@ struct AnyBelief {
   Mean mean = Vec<double, 4>::Zero();
   Covariance covariance = Mat<double, 4, 4>::Identity();
 
-  [[nodiscard]] int states() const noexcept { return states_of(layout); }
+  [[nodiscard]] int states() const noexcept { return static_cast<int>(mean.size()); }
 
   /// As one of a size known at compile time.
   template <int N>
