@@ -11,6 +11,6 @@ mkdir -p "$root/build/doxygen"
 if grep -E 'Compound [^<]* is not|\((function|enumeration)\) of namespace' "$root/build/doxygen/warnings.txt" >&2; then
   fail "these names need a comment in their header"
 fi
-NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --quiet --strict --config-file "$root/cpp/mkdocs.yml"
+NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --strict --config-file "$root/cpp/mkdocs.yml"
 cp -r "$root/build/doxygen/html" "$root/build/site/cpp"
 echo "written to build/site: index.html"
