@@ -114,7 +114,7 @@ TEST(Duplicates, AreThoseOfAllPairs) {
     Duplicates duplicates(config, kThreshold);
     std::vector<int> slots;
     for (int k = 1; k <= 100; ++k) {
-      Track& track = open(tracks, -k, {});
+      Track& track = open(tracks, -k, Vec<double, 4>::Zero());
       const auto axis = [&] { return draw.uniform(-400.0, 400.0); };
       track.kinematics.mean << axis(), draw.uniform(-20.0, 20.0), axis(), draw.uniform(-20.0, 20.0);
       track.kinematics.covariance *= draw.uniform(0.0, 1.0) < 0.1 ? 100.0 : 1.0;
