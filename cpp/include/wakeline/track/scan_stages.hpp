@@ -194,9 +194,9 @@ class ScanStages {
     if (!is_passed) arc = sight.arc(1.0);
     const bool has_swept = state().beam.has_swept(arc);
     const bool may_wait = has_swept ? beam_rad < longest_wait_rad(arc) : !is_passed;
-    int& near = near_plot_[static_cast<std::size_t>(slot)];
-    near = may_wait ? join_near(track) : kNoPlot;
-    const auto has_near = [&] { return may_wait ? near != kNoPlot : has_plot_near(track); };
+    int& plot = near_plot_[static_cast<std::size_t>(slot)];
+    plot = may_wait ? join_near(track) : kNoPlot;
+    const auto has_near = [&] { return may_wait ? plot != kNoPlot : has_plot_near(track); };
     if (!is_passed && !(has_swept && has_near())) {
       waiting_.push_back(slot);
     } else if (has_swept && (is_covered(track) || has_near())) {
