@@ -78,13 +78,6 @@ std::string described(const char* role, const char* type, const py::object& func
          (name.is_none() ? "" : " (" + py::str(name).cast<std::string>() + ")");
 }
 
-/// A function as `repr` shows it: by its name, as its address differs between processes.
-std::string shown(const py::object& function) {
-  if (function.is_none()) return "None";
-  const py::object name = py::getattr(function, "__qualname__", py::none());
-  return name.is_none() ? quoted(function) : py::str(name).cast<std::string>();
-}
-
 py::object or_none(const std::optional<py::function>& function) {
   return function ? py::object(*function) : py::none();
 }
@@ -132,23 +125,19 @@ Result product_of(const Given& m, const State& x) noexcept {
 /// noise, semidefinite.
 template <class Given>
 void require_covariance(const std::string& what, const Given& matrix, bool definite) {
-  double largest = 0.0, sum = 0.0;
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    largest = std::max(largest, std::abs(matrix(i, i)));
-  for (Eigen::Index k = 0; k < matrix.size(); ++k) sum += std::abs(matrix.data()[k]);
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    for (Eigen::Index j = 0; j < i; ++j)
-      if (!(std::abs(matrix(i, j) - matrix(j, i)) <= 1e-9 * largest))
-        throw py::value_error(what + " must be symmetric, got " + number_text(matrix(i, j)) +
-                              " at (" + std::to_string(i) + ", " + std::to_string(j) + ") and " +
-                              number_text(matrix(j, i)) + " at (" + std::to_string(j) + ", " +
-                              std::to_string(i) + ")");
-  if (!definite && sum == 0.0) return;
+  const auto rows = static_cast<int>(matrix.rows());
+  if (const auto found = asymmetry(rows, matrix)) {
+    const auto [i, j] = *found;
+    throw py::value_error(what + " must be symmetric, got " + number_text(matrix(i, j)) + " at (" +
+                          std::to_string(i) + ", " + std::to_string(j) + ") and " +
+                          number_text(matrix(j, i)) + " at (" + std::to_string(j) + ", " +
+                          std::to_string(i) + ")");
+  }
+  if (!definite && matrix.isZero(0.0)) return;
   const double rounding =
-      definite ? 0.0 : std::max(1e-9 * largest, std::numeric_limits<double>::min());
-  const RuntimeCholesky root(static_cast<int>(matrix.rows()), [&](int i, int j) {
-    return matrix(i, j) + (i == j ? rounding : 0.0);
-  });
+      definite ? 0.0 : std::max(rounding_of(rows, matrix), std::numeric_limits<double>::min());
+  const RuntimeCholesky root(
+      rows, [&](int i, int j) { return matrix(i, j) + (i == j ? rounding : 0.0); });
   if (!root.ok)
     throw py::value_error(what + " must be positive " + (definite ? "" : "semi") +
                           "definite, got " + text_of(to_array(matrix)));
@@ -208,11 +197,29 @@ class Priors {
   std::map<Component, double> variance_;
 };
 
-class LinearMotion : public PyMotion {
+/// A motion model of Python functions.
+class MotionOfFunctions : public PyMotion {
+ public:
+  MotionOfFunctions(std::vector<py::object> functions, const StateRows& rows,
+                    const std::map<std::string, double>& prior_std)
+      : PyMotion(rows), functions_(std::move(functions)), priors_(rows, prior_std) {}
+
+  [[nodiscard]] double prior_variance(Component component) const noexcept override {
+    return priors_.variance(component);
+  }
+  [[nodiscard]] const py::object& function(std::size_t k) const { return functions_[k]; }
+  [[nodiscard]] const Priors& priors() const { return priors_; }
+
+ private:
+  Functions functions_;
+  Priors priors_;
+};
+
+class LinearMotion : public MotionOfFunctions {
  public:
   LinearMotion(const py::function& matrix, const py::function& noise, const StateRows& rows,
                const std::map<std::string, double>& prior_std)
-      : PyMotion(rows), functions_({matrix, noise}), priors_(rows, prior_std) {
+      : MotionOfFunctions({matrix, noise}, rows, prior_std) {
     (void)of_step(1.0);  // so that an error is raised where the model is made
     fault().raise();
   }
@@ -228,9 +235,6 @@ class LinearMotion : public PyMotion {
   [[nodiscard]] Matrix process_noise(const State&, double dt_s) const noexcept override {
     return of_step(dt_s).q;
   }
-  [[nodiscard]] double prior_variance(Component component) const noexcept override {
-    return priors_.variance(component);
-  }
 
   /// F(dt) and Q(dt), of which the last ones are kept.
   struct Step {
@@ -245,11 +249,11 @@ class LinearMotion : public PyMotion {
     return guarded<Step>(fault(), Step{unknown, unknown}, [&] {
       const std::vector<py::ssize_t> square{states(), states()};
       const auto named = [&](const char* role, std::size_t k) {
-        return described(role, type(), functions_[k]);
+        return described(role, type(), function(k));
       };
       const Step step{
-          to_rows_and_columns(numbers_of(named("matrix", 0), functions_[0](dt_s), square)),
-          to_rows_and_columns(numbers_of(named("process_noise", 1), functions_[1](dt_s), square))};
+          to_rows_and_columns(numbers_of(named("matrix", 0), function(0)(dt_s), square)),
+          to_rows_and_columns(numbers_of(named("process_noise", 1), function(1)(dt_s), square))};
       require_covariance(named("process_noise", 1), step.q, false);
       const std::lock_guard hold(mutex_);
       if (kept_.size() >= kMostKept) kept_.clear();
@@ -258,25 +262,18 @@ class LinearMotion : public PyMotion {
     });
   }
 
-  [[nodiscard]] const Functions& functions() const { return functions_; }
-  [[nodiscard]] const Priors& priors() const { return priors_; }
-
  private:
   static constexpr std::size_t kMostKept = 1024;
-  Functions functions_;
-  Priors priors_;
   mutable std::mutex mutex_;  // never held while Python runs
   mutable std::map<double, Step> kept_;
 };
 
-class FunctionMotion : public PyMotion {
+class FunctionMotion : public MotionOfFunctions {
  public:
   FunctionMotion(const py::function& transition, const py::function& noise, const StateRows& rows,
                  const std::optional<py::function>& jacobian,
                  const std::map<std::string, double>& prior_std)
-      : PyMotion(rows),
-        functions_({transition, noise, or_none(jacobian)}),
-        priors_(rows, prior_std) {}
+      : MotionOfFunctions({transition, noise, or_none(jacobian)}, rows, prior_std) {}
 
   [[nodiscard]] const char* type() const noexcept override { return "FunctionMotion"; }
   [[nodiscard]] bool linear() const noexcept override { return false; }
@@ -285,36 +282,26 @@ class FunctionMotion : public PyMotion {
                           [&] { return to_state(called(0, "transition", x, dt_s, {states()})); });
   }
   [[nodiscard]] Matrix jacobian(const State& x, double dt_s) const noexcept override {
-    if (functions_[2].is_none()) return CustomMotion::jacobian(x, dt_s);
+    if (function(2).is_none()) return CustomMotion::jacobian(x, dt_s);
     return square(2, "jacobian", x, dt_s);
   }
   [[nodiscard]] Matrix process_noise(const State& x, double dt_s) const noexcept override {
     return square(1, "process_noise", x, dt_s);
   }
-  [[nodiscard]] double prior_variance(Component component) const noexcept override {
-    return priors_.variance(component);
-  }
-
-  [[nodiscard]] const Functions& functions() const { return functions_; }
-  [[nodiscard]] const Priors& priors() const { return priors_; }
 
  private:
   [[nodiscard]] DoubleArray called(std::size_t k, const char* role, const State& x, double dt_s,
                                    const std::vector<py::ssize_t>& shape) const {
-    return numbers_of(described(role, type(), functions_[k]), functions_[k](to_array(x), dt_s),
-                      shape);
+    return numbers_of(described(role, type(), function(k)), function(k)(to_array(x), dt_s), shape);
   }
   [[nodiscard]] Matrix square(std::size_t k, const char* role, const State& x,
                               double dt_s) const noexcept {
     return guarded<Matrix>(fault(), Matrix::Constant(states(), states(), kNaN), [&] {
       const Matrix matrix = to_rows_and_columns(called(k, role, x, dt_s, {states(), states()}));
-      if (k == 1) require_covariance(described(role, type(), functions_[k]), matrix, false);
+      if (k == 1) require_covariance(described(role, type(), function(k)), matrix, false);
       return matrix;
     });
   }
-
-  Functions functions_;
-  Priors priors_;
 };
 
 ReadingMatrix to_noise(const DoubleArray& covariance) {
@@ -416,9 +403,9 @@ class FunctionSensor : public PySensor {
   Functions functions_;
 };
 
-/// An immutable object that copies share; `shown` is its `repr`.
-template <class Class, class... Options, class Shown>
-void define_shared(py::class_<Class, Options...>& type, const Shown& shown) {
+/// An immutable object that copies share.
+template <class Class, class... Options>
+void define_shared(py::class_<Class, Options...>& type) {
   type.def("__copy__", [](const std::shared_ptr<Class>& one) { return one; })
       .def(
           "__deepcopy__", [](const std::shared_ptr<Class>& one, const py::dict&) { return one; },
@@ -509,16 +496,12 @@ Bar-Shalom, Li, Kirubarajan, 5.2.1.)")
           py::arg("dt_s"), "Q(dt), (N, N).")
       .def("_arguments", [](const LinearMotion& one) {
         return Arguments()
-            .with("matrix", one.functions()[0])
-            .with("process_noise", one.functions()[1])
+            .with("matrix", one.function(0))
+            .with("process_noise", one.function(1))
             .with("state", names_in(rows_of(one.layout())))
             .with("prior_std", one.priors().std_of());
       });
-  define_shared(linear, [](const LinearMotion& one) {
-    return "LinearMotion(matrix=" + shown(one.functions()[0]) +
-           ", process_noise=" + shown(one.functions()[1]) +
-           ", state=" + names_of(rows_of(one.layout())) + ")";
-  });
+  define_shared(linear);
 
   py::class_<FunctionMotion, PyMotion, std::shared_ptr<FunctionMotion>> function(
       m, "FunctionMotion",
@@ -581,18 +564,13 @@ Bar-Shalom, Li, Kirubarajan, 10.3.1.)")
           py::arg("x"), py::arg("dt_s"), "Q(x, dt), (N, N).")
       .def("_arguments", [](const FunctionMotion& one) {
         return Arguments()
-            .with("transition", one.functions()[0])
-            .with("process_noise", one.functions()[1])
+            .with("transition", one.function(0))
+            .with("process_noise", one.function(1))
             .with("state", names_in(rows_of(one.layout())))
-            .with("jacobian", one.functions()[2])
+            .with("jacobian", one.function(2))
             .with("prior_std", one.priors().std_of());
       });
-  define_shared(function, [](const FunctionMotion& one) {
-    return "FunctionMotion(transition=" + shown(one.functions()[0]) +
-           ", process_noise=" + shown(one.functions()[1]) +
-           ", state=" + names_of(rows_of(one.layout())) +
-           ", jacobian=" + shown(one.functions()[2]) + ")";
-  });
+  define_shared(function);
 }
 
 const char* const kReadsDoc = R"(reads : sequence of names, optional
@@ -656,11 +634,7 @@ Bar-Shalom, Li, Kirubarajan, 5.2.1.)")
             .with("covariance", one.noise())
             .with("reads", names_in(one.reads()));
       });
-  define_shared(linear, [](const LinearSensor& one) {
-    return "LinearSensor(matrix=" + text_of(to_array(one.matrix())) +
-           ", covariance=" + text_of(to_array(one.noise())) + ", reads=" + names_of(one.reads()) +
-           ")";
-  });
+  define_shared(linear);
 
   py::class_<FunctionSensor, PySensor, std::shared_ptr<FunctionSensor>> function(
       m, "FunctionSensor",
@@ -711,11 +685,7 @@ Bar-Shalom, Li, Kirubarajan, 10.3.1.)")
             .with("jacobian", one.functions()[1])
             .with("angles", one.angles());
       });
-  define_shared(function, [](const FunctionSensor& one) {
-    return "FunctionSensor(measure=" + shown(one.functions()[0]) +
-           ", covariance=" + text_of(to_array(one.noise())) + ", reads=" + names_of(one.reads()) +
-           ", jacobian=" + shown(one.functions()[1]) + ")";
-  });
+  define_shared(function);
 }
 
 }  // namespace

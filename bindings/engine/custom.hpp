@@ -4,11 +4,15 @@
 // Motion models and sensors of matrices and functions in Python.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/arguments.hpp"
@@ -23,6 +27,24 @@ namespace wakeline::python {
 std::string name_of(Component component);
 /// "[x, vx, y, vy]".
 std::string names_of(const StateRows& rows);
+
+/// How much elements `at(i, j)` of a covariance may be off by rounding.
+template <class At>
+double rounding_of(int rows, const At& at) {
+  double largest = 0.0;
+  for (int i = 0; i < rows; ++i) largest = std::max(largest, std::abs(at(i, i)));
+  return 1e-9 * largest;
+}
+
+/// The first element of a covariance, row and column, that differs from its mirror image.
+template <class At>
+std::optional<std::pair<int, int>> asymmetry(int rows, const At& at) {
+  const double rounding = rounding_of(rows, at);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < i; ++j)
+      if (!(std::abs(at(i, j) - at(j, i)) <= rounding)) return std::pair(i, j);
+  return std::nullopt;
+}
 
 /// The first exception of a model's functions, until the call that they were called in raises it:
 /// the steps between are C++, which exceptions do not pass.

@@ -194,14 +194,9 @@ void require_covariances(const DoubleArray& covariance, const DoubleArray& z) {
     const double* const reading = z.data() + row * numbers;
     if (std::all_of(reading, reading + numbers, [](double one) { return one != one; })) continue;
     const double* const c = covariance.data() + row * numbers * numbers;
-    const auto at = [&](py::ssize_t i, py::ssize_t j) { return c[numbers * i + j]; };
-    double largest = 0.0;
-    bool symmetric = true;
-    for (py::ssize_t i = 0; i < numbers; ++i) largest = std::max(largest, std::abs(at(i, i)));
-    for (py::ssize_t i = 0; i < numbers; ++i)
-      for (py::ssize_t j = 0; j < i; ++j)
-        symmetric = symmetric && std::abs(at(i, j) - at(j, i)) <= 1e-9 * largest;
-    if (!symmetric || !RuntimeCholesky(static_cast<int>(numbers), at).ok)
+    const auto at = [&](int i, int j) { return c[numbers * i + j]; };
+    const auto rows = static_cast<int>(numbers);
+    if (asymmetry(rows, at) || !RuntimeCholesky(rows, at).ok)
       throw py::value_error(
           "covariance must be symmetric positive definite, which that of reading " +
           std::to_string(row) + " is not");
