@@ -14,7 +14,8 @@ the runs, rounded up, is made of each scene.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -218,6 +219,18 @@ def _tracker(sensors: set[int], window_s: float) -> tuple[wl.Tracker, dict[int, 
     return tracker, {k: number for number, k in enumerate(used)}
 
 
+def arrivals(
+    calls: Sequence[tuple[Any, ...]], times_s: Iterable[float]
+) -> Iterator[tuple[float, Sequence[tuple[Any, ...]]]]:
+    """Each time with the calls, sorted by arrival, that have come since the one before."""
+    arrival_s = [call[0] for call in calls]
+    done = 0
+    for now_s in times_s:
+        come = bisect_right(arrival_s, now_s, lo=done)
+        yield now_s, calls[done:come]
+        done = come
+
+
 def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, float]:
     """The figures of a tracker that is given some of the sensors, late data in a window."""
     tracker, number = _tracker(sensors, window_s)
@@ -225,15 +238,12 @@ def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, 
     states = np.arange(SETTLED_S, DURATION_S - STEP_S, STEP_S)
     sums = dict.fromkeys(("position", "velocity", "matched", "gospa", "right", "twice"), 0.0)
     longest_s, double_s = 0.0, np.zeros(len(scene.truths))
-    next_call = 0
-    for now_s in states:
-        while next_call < len(calls) and calls[next_call][0] <= now_s:
-            _, sensor, values = calls[next_call]
+    for now_s, arrived in arrivals(calls, states):
+        for _, sensor, values in arrived:
             if sensor in number:
                 tracker.sector(radar=number[sensor], **values)
             else:
                 tracker.report(**values)
-            next_call += 1
         tracks = tracker.tracks(now_s)
         truth = np.array([one.state_at(now_s)[0] for one in scene.truths])
         sums["gospa"] += metrics.gospa(

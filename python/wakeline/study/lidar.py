@@ -21,6 +21,7 @@ from wakeline.recording import Episode, Tracks
 from wakeline.tracking import read_settings
 
 from .base import Done, Picture, Plan, Request, Rows, Study, means_of
+from .fusion import arrivals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,10 +72,10 @@ def follow(
         for scan in episodes[name].scans
     ]
     calls.sort(key=lambda call: call[:2])
-    tables, next_call = [], 0
-    for now_s in [*episodes["radar"].time_s.tolist(), np.inf]:
-        while next_call < len(calls) and calls[next_call][0] <= now_s:
-            _, number, scan, own = calls[next_call]
+    tables, begun = [], False
+    for now_s, arrived in arrivals(calls, [*episodes["radar"].time_s.tolist(), np.inf]):
+        begun = begun or bool(arrived)
+        for _, number, scan, own in arrived:
             ((north_m, east_m),) = own.position_at(np.array([scan.time_s]))
             tracker.sector(
                 radar=number,
@@ -86,8 +87,7 @@ def follow(
                 plot_time_s=scan.plot_time_s,
                 own=wl.OwnShip(north_m=north_m, east_m=east_m),
             )
-            next_call += 1
-        if np.isfinite(now_s) and next_call:
+        if np.isfinite(now_s) and begun:
             tables.append((now_s, tracker.tracks(now_s)))
     tracks = Tracks(
         track_id=np.concatenate([table.track_id for _, table in tables]).astype(str),
