@@ -5,6 +5,7 @@ Look at them before they go into cpp/docs/images.
 """
 
 import contextlib
+import itertools
 import math
 import sys
 import tempfile
@@ -55,20 +56,35 @@ def played(episode, radar, page, address, at_s, *, limits=None, **options):
     return shown(player, page, address, player.start_s + at_s)
 
 
-def joyride(page):
-    recording = wl.recording.load("joyride")
+@contextlib.contextmanager
+def recorded(config, messages):
+    """A player of a session that has recorded messages: time, name of the input and octets."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "session.pcap"
+        recorder = Recorder(path, config.as_document())
+        recorder.begin(START_S)
+        for time_s, name, octets in messages:
+            recorder.data(time_s, name, "udp://127.0.0.1:8600", octets)
+        recorder.close()
+        yield SessionPlayback(path)
+
+
+def bundled(name, page, address, at_s):
+    """The first episode of a bundled recording."""
+    recording = wl.recording.load(name)
     episode = recording.episodes[0]
-    address = "palette=day&range=926&trailMinutes=3&vectorMinutes=1"
-    with played(episode, recording.radar, page, address, 90.0, own=episode.own):
+    with played(episode, recording.radar, page, address, at_s, own=episode.own):
         yield
+
+
+def joyride(page):
+    address = "palette=day&range=926&trailMinutes=3&vectorMinutes=1"
+    return bundled("joyride", page, address, 90.0)
 
 
 def autoferry(page):
-    recording = wl.recording.load("autoferry")
-    episode = recording.episodes[0]
     address = "palette=dusk&units=metric&range=200&trailMinutes=1&vectorMinutes=1"
-    with played(episode, recording.radar, page, address, 75.0, own=episode.own):
-        yield
+    return bundled("autoferry", page, address, 75.0)
 
 
 def strait(page):
@@ -85,28 +101,19 @@ def strait(page):
         ),
     )
     encoder = Cat240Encoder(1, 1)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "strait.pcap"
-        recorder = Recorder(path, config.as_document())
-        recorder.begin(START_S)
-        for turn in scene.turns(turns, 3):
-            for first in range(0, len(turn), 4):
-                part = turn[first : first + 4]
-                octets = encoder.encode(
-                    part.amplitude,
-                    part.azimuth_rad,
-                    (part.time_s + START_S) % 86400.0,
-                    azimuth_width_rad=part.azimuth_width_rad,
-                    start_range_m=part.start_range_m,
-                    cell_m=part.cell_m,
-                )
-                at_s = START_S + float(part.time_s[-1])
-                recorder.data(at_s, "radar video", "udp://127.0.0.1:8600", octets)
-        recorder.close()
-        player = SessionPlayback(path)
+    parts = (
+        turn[first : first + 4]
+        for turn in scene.turns(turns, 3)
+        for first in range(0, len(turn), 4)
+    )
+    messages = (
+        (START_S + float(part.time_s[-1]), "radar video", demo._encoded(encoder, part, START_S))
+        for part in parts
+    )
+    with recorded(config, messages) as player:
         player.command({"command": "limits", "cpa_limit_m": 40.0, "tcpa_limit_s": 240.0})
-        corners = [700.0 * np.exp(1j * math.tau * k / 12) for k in range(12)]
-        near = {"name": "", "kind": "exclusion", "outline_m": [[z.real, z.imag] for z in corners]}
+        corners = wl.plot.circle_outline([0.0, 0.0], 700.0, 13)[:-1].tolist()
+        near = {"name": "", "kind": "exclusion", "outline_m": corners}
         player.command({"command": "zone", "zone": near})
         end_s = START_S + 3.0 * turns
         with shown(player, page, "range=11112&trailMinutes=3&gain=7", end_s, wait_s=10.0):
@@ -173,18 +180,9 @@ def encounter(page):
 
 def replay(page):
     """The demonstration, recorded and played at night."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "demo.pcap"
-        config = demo.demo_config("tracks.jsonl")
-        recorder = Recorder(path, config.as_document())
-        recorder.begin(START_S)
-        for message in demo.demo_messages(START_S):
-            if message.at_s > 110.0:
-                break
-            url = "udp://127.0.0.1:1"
-            recorder.data(START_S + message.at_s, message.input, url, message.octets)
-        recorder.close()
-        player = SessionPlayback(path)
+    sent = itertools.takewhile(lambda one: one.at_s <= 110.0, demo.demo_messages(START_S))
+    messages = ((START_S + one.at_s, one.input, one.octets) for one in sent)
+    with recorded(demo.demo_config("tracks.jsonl"), messages) as player:
         address = "palette=night&range=5556&trailMinutes=3"
         with shown(player, page, address, START_S + 100.0, wait_s=8.0):
             named = "[...wakeline.store.tracks.values()].find((one) => one.identity).id"
