@@ -1,4 +1,4 @@
-"""Motion models and sensors by matrices and functions in Python: the laws of the engine's own."""
+"""Motion models and sensors by matrices and functions in Python, beside those of the engine."""
 
 import copy
 import pickle
@@ -9,18 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wakeline as wl
-from cases import CONVERTED, DT_S, POSITION, RADAR, SMALL_NOISE, START, readings
+from cases import CONVERTED, DT_S, MOTIONS, POSITION, RADAR, START, readings, stepwise
 
-STRAIGHT = wl.ConstantVelocity(noise=SMALL_NOISE)
-TURN = wl.CoordinatedTurn(turn_rate_rad_s=0.02, noise=SMALL_NOISE)
-ACCELERATED = wl.ConstantAcceleration(noise=wl.WhiteJerk(psd_m2s5=0.01))
-TURNING = wl.CoordinatedTurnRate(noise=SMALL_NOISE)
+STRAIGHT, TURN = MOTIONS["ConstantVelocity"], MOTIONS["CoordinatedTurn"]
+ACCELERATED, TURNING = MOTIONS["ConstantAcceleration"], MOTIONS["CoordinatedTurnRate"]
 TURNING_STATE = ["x", "vx", "y", "vy", "omega"]
 ACCELERATED_STATE = ["x", "vx", "ax", "y", "vy", "ay"]
 
 
-def by_matrices(motion, state=("x", "vx", "y", "vy"), **prior):
-    return wl.LinearMotion(motion.matrix, motion.process_noise, state=state, **prior)
+def by_matrices(motion, state=("x", "vx", "y", "vy")):
+    return wl.LinearMotion(motion.matrix, motion.process_noise, state=state)
 
 
 def by_functions(motion, state, with_jacobian=True, **prior):
@@ -86,12 +84,12 @@ def test_matrices_of_every_size_give_the_results_of_the_model(kind, sensor):
     z = readings(miss=(4, 11))
     if sensor is POSITION:
         z = z[:, :1] * np.column_stack([np.cos(z[:, 1]), np.sin(z[:, 1])])
-    for motion, state, prior in (
-        (STRAIGHT, TURNING_STATE[:4], {}),
-        (TURN, TURNING_STATE[:4], {}),
-        (ACCELERATED, ACCELERATED_STATE, {}),
+    for motion, state in (
+        (STRAIGHT, TURNING_STATE[:4]),
+        (TURN, TURNING_STATE[:4]),
+        (ACCELERATED, ACCELERATED_STATE),
     ):
-        custom = by_matrices(motion, state, **prior)
+        custom = by_matrices(motion, state)
         own, ours = (kind(one).run(z, DT_S, sensor, START) for one in (motion, custom))
         assert_same(own, ours, rtol=1e-9)
         assert own.mean.shape[1] == custom.states == len(state)
@@ -270,9 +268,9 @@ def test_missing_parts_of_readings_are_used_as_such():
 
     doppler = wl.RangeBearingDoppler(range_std_m=30.0, bearing_std_rad=np.deg2rad(0.5))
     z3 = np.column_stack([readings(miss=(9,)), np.full(30, np.nan)])
-    assert_parts = wl.Ekf(STRAIGHT).run(z3, DT_S, doppler, START)
+    part = wl.Ekf(STRAIGHT).run(z3, DT_S, doppler, START)
     plain = wl.Ekf(STRAIGHT).run(z3[:, :2], DT_S, RADAR, START)
-    np.testing.assert_allclose(assert_parts.mean, plain.mean, rtol=1e-12)
+    np.testing.assert_allclose(part.mean, plain.mean, rtol=1e-12)
 
     # A plot with a part missing among whole ones, in a Kalman filter too.
     mixed = readings()
@@ -281,21 +279,17 @@ def test_missing_parts_of_readings_are_used_as_such():
         result = estimator.run(mixed, DT_S, CONVERTED, START)
         assert (result.status == int(wl.Status.ok)).all()
         np.testing.assert_array_equal(np.isnan(result.innovation[4]), [True, False])
-        estimator.start(START)
-        for row in mixed[:5]:
-            estimator.predict(DT_S)
-            step = estimator.update(CONVERTED, row)
-        assert np.isnan(step.innovation[0])
-        assert step.nis == pytest.approx(result.nis[4], rel=1e-6)
+        _, _, innovation, nis, _ = stepwise(estimator, mixed[:5], sensor=CONVERTED)
+        assert np.isnan(innovation[4][0])
+        assert nis[4] == pytest.approx(result.nis[4], rel=1e-6)
 
 
 def test_a_missing_part_counts_in_the_gate_by_the_numbers_there():
     """A range that is 2.9 sigma off: outside the 99 % gate of one number, inside that of two."""
-    ekf = wl.Ekf(STRAIGHT)
-    ekf.start(wl.Gaussian([4000.0, 0.0, 0.0, 0.0], np.eye(4) * 1e-6))
     z = [[4000.0 + 2.9 * RADAR.range_std_m, np.nan]]
     start = wl.Gaussian([4000.0, 0.0, 0.0, 0.0], np.eye(4) * 1e-6)
-    result = ekf.run(z, 0.0, RADAR, start, gate=wl.ChiSquareGate(probability=0.99))
+    gate = wl.ChiSquareGate(probability=0.99)
+    result = wl.Ekf(STRAIGHT).run(z, 0.0, RADAR, start, gate=gate)
     assert result.status[0] == int(wl.Status.gated)
 
 
@@ -319,8 +313,7 @@ def test_bearings_alone_find_a_target_when_own_ship_turns():
             ukf.predict(10.0)
             ukf.update(sensor, random.normal(bearing_of(truth[[0, 2]] - own), np.deg2rad(0.5)))
         belief = ukf.estimate()
-        error = belief.mean - truth
-        normalized.append(error @ np.linalg.solve(belief.covariance, error) / 4)
+        normalized.append(wl.eval.nees(belief.mean - truth, belief.covariance) / 4)
     assert np.sqrt(np.trace(belief.covariance[::2, ::2])) < 600.0
     assert np.mean(normalized) < 1.6
 
