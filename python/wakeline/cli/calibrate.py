@@ -14,7 +14,6 @@ from wakeline.recording import Recording
 from wakeline.recording.files import replacing_together
 from wakeline.tracking import (
     calibrate,
-    open_recording,
     read_reports,
     read_settings,
     reports_of,
@@ -130,18 +129,18 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _reports(arguments: argparse.Namespace, recording: Recording) -> list[Any]:
     """What the plots are compared with, for each episode."""
-    columns = dict(arguments.columns)
     if arguments.against is None:
-        return read_reports(arguments.ais, recording, origin_deg=arguments.origin, columns=columns)
+        return read_reports(
+            arguments.ais,
+            recording,
+            origin_deg=arguments.origin,
+            columns=dict(arguments.columns),
+        )
     settings = read_settings(radar=arguments.against_radar)
-    other = open_recording(
-        arguments.against,
-        arguments.against_own,
-        period_s=settings.period_s,
-        azimuth=arguments.azimuth,
-        columns=columns,
+    other = options.opened(
+        arguments, settings, recording=arguments.against, own=arguments.against_own
     )
-    return reports_of(track_recording(other, config=settings.knowing(other.radar)).smooth())
+    return reports_of(track_recording(other, config=settings).smooth())
 
 
 def _about(recording: Recording, found: wl.track.CalibrationResult) -> str:

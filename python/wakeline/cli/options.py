@@ -75,12 +75,10 @@ def add_results(
 def opened(arguments: argparse.Namespace, settings: Settings, **others: Any) -> Recording:
     """The recording of the command line; `others` as of :func:`open_recording`."""
     return open_recording(
-        arguments.plots,
-        arguments.own,
+        **{"recording": arguments.plots, "own": arguments.own} | others,
         period_s=settings.period_s,
         azimuth=arguments.azimuth,
         columns=dict(arguments.columns),
-        **others,
     )
 
 
