@@ -10,8 +10,9 @@ import numpy as np
 
 import wakeline as wl
 
-episode = wl.recording.load("joyride").episodes[0]
-radar = {key: value for key, value in wl.recording.load("joyride").radar.items() if value}
+recording = wl.recording.load("joyride")
+episode = recording.episodes[0]
+radar = {key: value for key, value in recording.radar.items() if value}
 origin_m = episode.own.position_at(episode.time_s[:1])[0]
 
 

@@ -208,9 +208,12 @@ def _index(folders: dict[str, Path]) -> Iterator[str]:
 
 
 def _last_lines(folder: Path, count: int = 11) -> str:
-    """The last lines of what a program has printed."""
-    printed = (folder / "output.txt").read_text(encoding="utf-8").rstrip()
-    return "\n".join(printed.split("\n")[-count:])
+    return "\n".join(_printed(folder).split("\n")[-count:])
+
+
+def _printed(folder: Path) -> str:
+    """What a program has printed."""
+    return (folder / "output.txt").read_text(encoding="utf-8").rstrip()
 
 
 def _page(example: Example, folder: Path) -> Iterator[str]:
@@ -218,7 +221,7 @@ def _page(example: Example, folder: Path) -> Iterator[str]:
     yield example.about
     for picture in pictures(folder):
         yield f"![{example.title}]({picture.name})"
-    printed = (folder / "output.txt").read_text(encoding="utf-8").rstrip()
+    printed = _printed(folder)
     if printed:
         yield f"It prints:\n\n```text\n{printed}\n```"
     yield f'=== "Python"\n\n{_indented(f"`python/examples/{example.name}.py`")}'
