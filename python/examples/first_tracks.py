@@ -1,6 +1,6 @@
 """A recording to a picture: plots in, numbered tracks out, as tracked and smoothed.
 
-Writes first_tracks.png. Give a file of your own instead of the name: "plots.csv".
+Writes first_tracks.png. For another recording, give its file instead of the name: "plots.csv".
 """
 
 import wakeline as wl

@@ -1,4 +1,4 @@
-"""A motion model and a sensor of your own: a ferry that has stopped its engines.
+"""A custom motion model and sensor: a ferry that has stopped its engines.
 
 The water slows it in proportion to its speed; radar reports where it is, and every tenth second its
 AIS a speed. The drag is a fifth state. Prints where the ferry will rest, and writes own_model.png.
