@@ -67,8 +67,8 @@ struct Picture {
   TrackGate gate;
   TrackRoom room;
   double scan_time_s = 0.0;  ///< of the last scan of any radar
+  /// No `looked_s` of a track is before it: spares sectors the search for silent tracks.
   double looked_since_s = -std::numeric_limits<double>::infinity();
-  ///< a radar has looked at no track longer ago
   bool started = false;
   bool full = false;  ///< since the event that says so
   std::int64_t next_id = 1;

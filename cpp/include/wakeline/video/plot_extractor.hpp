@@ -77,7 +77,7 @@ enum class SweepStatus : std::uint8_t {
   kInvalid = 6,          ///< rejected: see `Sweep::valid`
 };
 
-/// Why a sweep was rejected, in words.
+/// Whether a sweep was rejected.
 [[nodiscard]] constexpr bool rejected(SweepStatus status) noexcept {
   return status >= SweepStatus::kRepeated;
 }
