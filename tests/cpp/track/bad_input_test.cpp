@@ -277,13 +277,13 @@ void survive(Association association, std::uint64_t seed, bool rotating) {
 
 TEST(Fuzz, EveryNumberStaysSound) {
   survive(Association::kProbabilistic, 1, false);
-  survive(Association::kGlobalNearest, 2, true);
+  survive(Association::kGlobalNearest, 1, true);
 }
 
 TEST(Fuzz, OfMoreSeedsTheyDoSo) {
   for (std::uint64_t seed = 2; seed <= 4; ++seed)
     survive(Association::kProbabilistic, seed, seed % 2 == 0);
-  survive(Association::kGlobalNearest, 1, false);
+  survive(Association::kGlobalNearest, 2, false);
   for (std::uint64_t seed = 1; seed <= 2; ++seed)
     survive(Association::kNearest, seed, seed % 2 == 0);
 }
