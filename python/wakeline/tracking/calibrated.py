@@ -117,15 +117,14 @@ def reports_of(tracks: TrackedRecording) -> list[dict[str, RadarTrack]]:
 
 
 def _reports_of(tracked: TrackedEpisode) -> dict[str, RadarTrack]:
-    tracks = tracked.tracks
-    antenna_m = tracked.episode.own.position_at(tracks.time_s)
     found = {}
-    for name in tracks.ids():
-        rows = tracks.track_id == name
-        north_m, vnorth_mps, east_m, veast_mps = tracks.state[rows].T
-        covariance = tracks.covariance[rows][:, ::2, ::2]
+    for track in tracked.tracks:
+        north_m, vnorth_mps, east_m, veast_mps = track.state.T
         place = (north_m, east_m, vnorth_mps, veast_mps)
-        found[name] = RadarTrack(tracks.time_s[rows], *place, covariance, *antenna_m[rows].T)
+        covariance = track.covariance[:, ::2, ::2]
+        antenna_m = tracked.episode.own.position_at(track.time_s)
+        name = str(track.track_id[0])
+        found[name] = RadarTrack(track.time_s, *place, covariance, *antenna_m.T)
     return found
 
 
