@@ -37,10 +37,9 @@ class _Rules(NamedTuple):
 
 _PLACE = ("latitude_deg", "longitude_deg"), ("north_m", "east_m")
 _PLACE_NUMBERS = frozenset(chain(*_PLACE))
+_SECTOR = frozenset(("from_rad", "to_rad", "time_s"))
 _RULES = {
-    "sector": _Rules(
-        frozenset(("from_rad", "to_rad", "time_s")), frozenset(("from_rad", "to_rad", "time_s"))
-    ),
+    "sector": _Rules(_SECTOR, _SECTOR),
     "own": _Rules(
         _PLACE_NUMBERS | {"time_s", "heading_rad", "course_rad", "speed_mps"},
         frozenset(),
