@@ -17,10 +17,9 @@ _reported = threading.Event()
 
 
 def report() -> None:
-    """Print, once, that the command was interrupted."""
-    if not _reported.is_set():
-        _reported.set()
-        print("wakeline: interrupted", file=sys.stderr, flush=True)
+    """Print that the command was interrupted."""
+    _reported.set()
+    print("wakeline: interrupted", file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -54,7 +53,8 @@ def _watch(reader: int) -> None:
     if octets:
         time.sleep(_GRACE_S)
         try:
-            report()
+            if not _reported.is_set():
+                report()
             sys.stdout.flush()
         finally:
             os._exit(INTERRUPTED)
