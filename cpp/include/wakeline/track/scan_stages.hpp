@@ -189,7 +189,10 @@ class ScanStages {
         position_at_constant_velocity(track.kinematics, state().time_s - track.time_s),
         look_at(track).passed_rad, picture_.gate.threshold(), state().radar, state().own);
     BeamArc arc = sight.arc(picture_.config.outlier_variance());
-    if (arc.from_rad > beam_rad) return;
+    if (arc.from_rad > beam_rad) {
+      look_at(track).look_rad = look_rad(track, arc);
+      return;
+    }
     const bool is_passed = arc.to_rad <= beam_rad;
     if (!is_passed) arc = sight.arc(1.0);
     const bool has_swept = state().beam.has_swept(arc);
@@ -234,7 +237,7 @@ class ScanStages {
   void pass(Track& track, const BeamArc& arc) noexcept {
     Look& look = look_at(track);
     look.passed_rad = std::max(arc.centre_rad, state().beam.last_rad(arc.centre_rad) - Beam::kTurn);
-    look.look_rad = next_look_rad(track, arc);
+    look.look_rad = look_rad(track, arc) + Beam::kTurn;
   }
 
   /// Has tracks wait that compete for a plot with one that waits, so that association is of both.
@@ -296,14 +299,14 @@ class ScanStages {
            picture_.gate.threshold();
   }
 
-  /// Where the beam may reach the gate of a track again, with room for what both do in a turn.
-  [[nodiscard]] double next_look_rad(const Track& track, const BeamArc& arc) const noexcept {
+  /// Where the beam may reach the gate of a track, with room for what both do in a turn.
+  [[nodiscard]] double look_rad(const Track& track, const BeamArc& arc) const noexcept {
     const double range_m = (track.position() - state().position()).norm();
     const double way_m =
         picture_.kPointedPeriods * state().radar.max_speed_mps * state().radar.period_s;
     const double way_rad = way_m < range_m ? std::asin(way_m / range_m) : kPi<double>;
     const double wide_rad = arc.to_rad - arc.from_rad + way_rad;
-    return arc.centre_rad + Beam::kTurn - std::min(wide_rad, kPi<double>);
+    return arc.centre_rad - std::min(wide_rad, kPi<double>);
   }
 
   /// Has the tracks that were designated before the first scan begin with it.
