@@ -15,7 +15,7 @@
 
 NEES is the normalized estimation error squared, of position or velocity: 2 where the covariance is
 right. Simulated echoes wander by `extent_std_m` of the radar's parameters. A tenth of the runs,
-rounded up, is drawn of each scenario, a hundredth of each scene.
+rounded up, is drawn of each scenario, five times as many of ships, a hundredth of each scene.
 """
 
 from __future__ import annotations
@@ -385,7 +385,8 @@ def _plan(request: Request) -> Plan:
     }
     for models, motions in (("tracker", MOTIONS), ("tracker_ships", SHIPS)):
         for motion in motions:
-            jobs["motion", motion, models] = partial(_motion_run, motion, models, few, seed)
+            drawn = 5 * few if motion in SHIPS else few
+            jobs["motion", motion, models] = partial(_motion_run, motion, models, drawn, seed)
     for name in RECORDINGS:
         jobs["recording", name] = partial(_recording_run, name)
     for scene in SCENES:

@@ -79,21 +79,67 @@ TEST(BentLineOfSight, HasTheMeanSquareOfItsDepth) {
   EXPECT_EQ(bent_m2({1.0, 2.0}, p), (Mat<double, 2, 2>::Zero())) << "about the antenna itself";
 }
 
-TEST(Reported, AddsWhatStaysAndATurnThatDoesNotShow) {
+TEST(Reported, AddsWhatStaysAndAnAlterationThatDoesNotShow) {
   Draw draw(7);
   const Gaussian<4> belief{{100.0, 6.0, -50.0, 8.0}, draw.definite<4>()};
   Mat<double, 2, 2> stays;
   stays << 9.0, 2.0, 2.0, 4.0;
-  const Gaussian<4> found = reported(belief, stays);
+  const Gaussian<4> found = reported(belief, 1.0, stays);
   EXPECT_EQ(found.mean, belief.mean);
   const Mat<double, 4, 4> more = found.covariance - belief.covariance;
-  const Vec<double, 4> along(0.0, 0.6, 0.0, 0.8), aside(0.0, -0.8, 0.0, 0.6);
-  EXPECT_NEAR(along.dot(more * along), 0.0, 1e-12);
-  EXPECT_NEAR(std::sqrt(aside.dot(more * aside)) / 10.0, 0.055, 1e-12);
+  for (const double course_rad : {0.0, 1.0, 2.0}) {
+    const Vec<double, 2> u = towards(course_rad);
+    const Vec<double, 4> velocity(0.0, u[0], 0.0, u[1]);
+    EXPECT_NEAR(std::sqrt(velocity.dot(more * velocity)) / 10.0, 0.05, 1e-12);
+  }
   EXPECT_NEAR(more(0, 0), 9.0, 1e-12);
   EXPECT_NEAR(more(0, 2), 2.0, 1e-12);
   EXPECT_NEAR(more(2, 2), 4.0, 1e-12);
   EXPECT_TRUE(Cholesky<4>(found.covariance).ok());
+}
+
+/// A filter of one axis that takes plots for ones of variance 1, as it allows for outliers, which
+/// have 0.9, with a period of 1 and noise that its target does not have: its variance, the gain,
+/// and the variance of its error, all of the position and settled.
+struct SettledFilter {
+  explicit SettledFilter(double psd) {
+    Mat<double, 2, 2> step, noise, p = Mat<double, 2, 2>::Identity(), error = p;
+    step << 1.0, 1.0, 0.0, 1.0;
+    noise << psd / 3, psd / 2, psd / 2, psd;
+    for (int k = 0; k < 2000; ++k) {
+      p = step * p * step.transpose() + noise;
+      const Vec<double, 2> weight = p.col(0) / (p(0, 0) + 1.0);
+      Mat<double, 2, 2> keep = Mat<double, 2, 2>::Identity();
+      keep.col(0) -= weight;
+      p = keep * p;
+      error = keep * step * error * step.transpose() * keep.transpose() +
+              0.9 * weight * weight.transpose();
+    }
+    variance = gain = p(0, 0);
+    error_variance = error(0, 0);
+  }
+  double variance, gain, error_variance;
+};
+
+// On a straight course: neither too small, nor larger than by a fifth where the gain is small.
+TEST(Reported, IsTheErrorOfAFilterWhoseNoiseDoesNotCome) {
+  for (const double psd : {1e-7, 1e-6, 1e-5, 1e-3, 0.1, 10.0}) {
+    const SettledFilter filter(psd);
+    Gaussian<4> belief{Vec<double, 4>::Zero(), Mat<double, 4, 4>::Identity()};
+    belief.covariance(0, 0) = belief.covariance(2, 2) = filter.variance;
+    const Gaussian<4> found = reported(belief, filter.gain, Mat<double, 2, 2>::Zero());
+    const double ratio = found.covariance(0, 0) / filter.error_variance;
+    EXPECT_GE(ratio, 1.0) << filter.gain;
+    EXPECT_LT(ratio, filter.gain < 0.05 ? 1.2 : 1.5) << filter.gain;
+    EXPECT_EQ(found.covariance(0, 0), found.covariance(2, 2));
+  }
+}
+
+TEST(Reported, KeepsTheCovarianceOfAPlot) {
+  Draw draw(8);
+  const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
+  for (const double gain : {1.0, 1.7})
+    EXPECT_EQ(reported(belief, gain, Mat<double, 2, 2>::Zero()).covariance, belief.covariance);
 }
 
 }  // namespace

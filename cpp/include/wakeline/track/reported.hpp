@@ -74,18 +74,28 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
   return 0.75 * s2 * s2 * from_antenna * from_antenna.transpose();
 }
 
-/// The belief of a track as it is reported: with the errors that stay from scan to scan, and an
-/// alteration of course of `kUnseenTurn_rad` that does not show yet. The estimator does
-/// without both.
-inline Gaussian<4> reported(Gaussian<4> kinematics, const Mat<double, 2, 2>& stays_m2) noexcept {
-  constexpr double kUnseenTurn_rad = 0.055;
-  const Vec<double, 2> aside_mps =
-      kUnseenTurn_rad * Vec<double, 2>(-kinematics.mean[3], kinematics.mean[1]);
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) {
-      kinematics.covariance(2 * i, 2 * j) += stays_m2(i, j);
-      kinematics.covariance(2 * i + 1, 2 * j + 1) += aside_mps[i] * aside_mps[j];
-    }
+/// The belief of a track as it is reported. The estimator does without all three:
+///
+/// - Noise and outliers are allowances. Where a plot has a small weight `gain`, the target has held
+///   its course for as long as the filter remembers, and neither came: the position errs by two
+///   thirds of its variance (three quarters without maneuvers, the small-gain limit of an
+///   alpha-beta filter, and a tenth less without outliers). The rest is left out as far as plots
+///   older than eight scans count, (1 - gain)⁸.
+/// - An alteration of the velocity by `kUnseen` of the speed, which does not show yet.
+/// - The errors of the position that stay from scan to scan.
+inline Gaussian<4> reported(Gaussian<4> kinematics, double gain,
+                            const Mat<double, 2, 2>& stays_m2) noexcept {
+  constexpr double kUnseen = 0.05;
+  const double held = std::pow(std::max(1.0 - gain, 0.0), 8);
+  const double errs = std::sqrt(1.0 - held / 3.0);
+  const Vec<double, 4> scale(errs, 1.0, errs, 1.0);
+  kinematics.covariance = scale.asDiagonal() * kinematics.covariance * scale.asDiagonal();
+  const Vec<double, 2> velocity_mps(kinematics.mean[1], kinematics.mean[3]);
+  const double unseen_m2s2 = kUnseen * kUnseen * velocity_mps.squaredNorm();
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) kinematics.covariance(2 * i, 2 * j) += stays_m2(i, j);
+    kinematics.covariance(2 * i + 1, 2 * i + 1) += unseen_m2s2;
+  }
   return kinematics;
 }
 

@@ -212,6 +212,8 @@ struct Track {
     return (kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2;
   }
   [[nodiscard]] double position_std_m() const noexcept { return std::sqrt(position_variance_m2()); }
+  /// How much a plot like its last one counts for its position.
+  [[nodiscard]] double gain() const noexcept { return position_variance_m2() / plot_m2; }
   [[nodiscard]] Vec<double, 2> position() const noexcept {
     return {kinematics.mean[0], kinematics.mean[2]};
   }

@@ -14,11 +14,11 @@ namespace wakeline {
 /// turning. Their noise grows with the square of the speed, so that one set serves a drifting ferry
 /// and a boat at play.
 ///
-/// A vessel that cruises is a ship under way, which keeps course and speed for half an hour; the
-/// others are craft, which do anything at any time. Most vessels are taken for ships when they are
-/// first seen, and for craft as soon as they move like craft; one that goes steadily for long
-/// enough is taken for a ship again. `ships()` is another set, where ships alter course as ships
-/// do.
+/// A vessel that cruises is a ship under way, which keeps course and speed for a quarter of an
+/// hour; the others are craft, which do anything at any time. Most vessels are taken for ships when
+/// they are first seen, and for craft as soon as they move like craft; one that goes steadily for
+/// long enough is taken for a ship again. `ships()` is another set, where ships alter course as
+/// ships do.
 struct VesselModels {
   double cruising_psd_m2s3 = 1e-4;
   double cruising_course_psd_rad2s = 1e-6;
@@ -31,7 +31,7 @@ struct VesselModels {
   double turn_rate_psd_rad2s3 = 0.0003;
   double prior_turn_rate_std_rad_s = 0.2;
   double cruising_probability = 0.95;
-  double cruising_sojourn_s = 1500.0;
+  double cruising_sojourn_s = 1000.0;
   double settling_s = 600.0;
   double steady_sojourn_s = 300.0;
   double restless_sojourn_s = 100.0;
@@ -76,7 +76,7 @@ struct VesselModels {
               "Mean time for which a vessel turns."));
   }
 
-  /// Of ships under way: straight for most of an hour, alterations of course within a minute. Three
+  /// Of ships under way: straight for twenty minutes, alterations of course within a minute. Three
   /// minutes after one their speed and course are known again (see cpp/docs/theory/a823.md); a boat
   /// at play is followed, its course less well.
   static constexpr VesselModels ships() noexcept {
@@ -90,7 +90,7 @@ struct VesselModels {
             .turn_rate_psd_rad2s3 = 3e-6,
             .prior_turn_rate_std_rad_s = 0.05,
             .cruising_probability = 0.98,
-            .cruising_sojourn_s = 3000.0,
+            .cruising_sojourn_s = 1200.0,
             .settling_s = 80.0,
             .steady_sojourn_s = 600.0,
             .restless_sojourn_s = 60.0,
