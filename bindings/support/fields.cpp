@@ -59,8 +59,7 @@ py::detail::value_and_holder holder_of(const py::handle& self) {
 /// The struct behind a Python object. Throws TypeError for one of another class.
 void* value_of(const py::handle& type, const py::handle& self) {
   if (!py::isinstance(self, type))
-    throw py::type_error("self must be " + name_of(type) + ", got " +
-                         quoted(self));
+    throw py::type_error("self must be " + name_of(type) + ", got " + quoted(self));
   void* one = holder_of(self).value_ptr();
   if (one == nullptr) throw py::type_error(name_of(type) + ".__init__ was not called");
   return one;
@@ -80,8 +79,8 @@ void set(const FieldRow& row, void* one, const py::handle& value) {
   if (taken == Taken::kYes) return;
   std::string expected = row.kind->expected();
   if (expected.empty()) expected = type_text(row, get(row, one), false);
-  const std::string message = std::string(row.name) + " must be " + expected + ", got " +
-                              quoted(value);
+  const std::string message =
+      std::string(row.name) + " must be " + expected + ", got " + quoted(value);
   if (taken == Taken::kWrongValue) throw py::value_error(message);
   throw py::type_error(message);
 }
@@ -105,7 +104,8 @@ void fill(const StructTable& table, const py::handle& type, void* one, const py:
                          "; give the others by name");
   for (std::size_t k = 0; k < positional.size(); ++k) set(table.rows[k], one, positional[k]);
   for (const auto& [key, value] : named) {
-    const FieldRow& row = row_of(table, type, key.cast<std::string>());
+    const auto name = key.cast<std::string>();
+    const FieldRow& row = row_of(table, type, name);
     if (static_cast<std::size_t>(&row - table.rows.data()) < positional.size())
       throw py::type_error(name_of(type) + " got two values for " + row.name);
     set(row, one, value);

@@ -246,7 +246,7 @@ class EncounterWatch {
     double position_m2, velocity_m2s2;  ///< largest variances of all directions
     double speed_mps, speed_std_mps;    ///< over ground; the error of the worst direction
     bool rests;                         ///< perhaps, by the smallest of all rest speeds
-    int known;  ///< the first encounter of a pair of which it has the smaller number
+    int known = 0;  ///< the first encounter of a pair of which it has the smaller number
     const WatchedVessel* vessel;
   };
 
