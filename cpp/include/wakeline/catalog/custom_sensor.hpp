@@ -209,7 +209,7 @@ class RuntimeSensorOf {
   [[nodiscard]] bool moves(AnyBelief::Mean& x, const AnyBelief::Mean& variance,
                            const ReadingVector& z) const noexcept {
     return visit([&]<class Sensor>(const Sensor& sensor) {
-      if constexpr (requires { requires BendingSensor<Sensor>; }) {
+      if constexpr (BendingSensor<Sensor>) {
         const auto at = read(sensor, x);
         if (!sensor.bends(at, read(sensor, variance))) return false;
         x = sensor.moved_to(at, NumbersOf<Sensor>(z));
