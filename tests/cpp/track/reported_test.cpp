@@ -135,6 +135,15 @@ TEST(Reported, IsTheErrorOfAFilterWhoseNoiseDoesNotCome) {
   }
 }
 
+TEST(GainOfATrack, IsTheWeightOfAPlotWhereOneRadarSeesIt) {
+  Track track;
+  track.kinematics.covariance = 25.0 * Mat<double, 4, 4>::Identity();
+  track.plot_m2 = 100.0;
+  EXPECT_DOUBLE_EQ(track.gain(), 0.25);
+  track.seen_until_s = track.time_s + 1.0;
+  EXPECT_EQ(track.gain(), 1.0);
+}
+
 TEST(Reported, KeepsTheCovarianceOfAPlot) {
   Draw draw(8);
   const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};

@@ -212,8 +212,11 @@ struct Track {
     return (kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2;
   }
   [[nodiscard]] double position_std_m() const noexcept { return std::sqrt(position_variance_m2()); }
-  /// How much a plot like its last one counts for its position.
-  [[nodiscard]] double gain() const noexcept { return position_variance_m2() / plot_m2; }
+  /// How much a plot like its last one counts for its position; 1 while other sensors see it too,
+  /// since the weight of one plot is then not that of all that comes.
+  [[nodiscard]] double gain() const noexcept {
+    return time_s < seen_until_s ? 1.0 : position_variance_m2() / plot_m2;
+  }
   [[nodiscard]] Vec<double, 2> position() const noexcept {
     return {kinematics.mean[0], kinematics.mean[2]};
   }
