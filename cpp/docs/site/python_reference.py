@@ -6,11 +6,14 @@ built.
 
 from __future__ import annotations
 
+import ast
 import inspect
 import logging
 import re
+import sys
 from collections.abc import Iterator
 from importlib import import_module
+from itertools import pairwise
 from types import ModuleType
 from typing import Any
 
@@ -75,7 +78,7 @@ def page_of(module: ModuleType, name: str) -> Iterator[str]:
             continue
         yield f"\n## `{public}`\n"
         if not (inspect.isclass(value) or callable(value)):
-            yield f"`{value!r}`\n" if len(repr(value)) < 200 else f"A `{type(value).__name__}`.\n"
+            yield from constant(value, f"wakeline.{name}.{public}", public)
             continue
         yield from described(value, f"wakeline.{name}.{public}", public)
         if inspect.isclass(value):
@@ -86,6 +89,35 @@ def public_names(module: ModuleType) -> list[str]:
     """The public names of a module, in its order."""
     names = getattr(module, "__all__", None) or vars(module)
     return [name for name in names if not name.startswith("_")]
+
+
+def constant(value: Any, place: str, name: str) -> Iterator[str]:
+    """The string below the assignment of a constant, and its value or its keys."""
+    about = next(filter(None, (string_below(name, value, source) for source in sources())), "")
+    if not about:
+        log.warning("%s has no docstring", place)
+    yield f"{as_markdown(about)}\n"
+    if isinstance(value, dict):
+        yield "Keys: " + ", ".join(f"`{key}`" for key in value) + ".\n"
+    elif len(repr(value)) < 200:
+        yield f"`{value!r}`\n"
+
+
+def sources() -> Iterator[ModuleType]:
+    """The modules of the package that have a source."""
+    modules = [module for name, module in sys.modules.items() if name.startswith("wakeline.")]
+    return (module for module in modules if (module.__file__ or "").endswith(".py"))
+
+
+def string_below(name: str, value: object, source: ModuleType) -> str:
+    """The string below the assignment of a name to a value in a module."""
+    if vars(source).get(name) is not value:
+        return ""
+    for assignment, below in pairwise(ast.parse(inspect.getsource(source)).body):
+        match assignment, below:
+            case ast.Assign([ast.Name(id)]), ast.Expr(ast.Constant(str(text))) if id == name:
+                return inspect.cleandoc(text)
+    return ""
 
 
 def members_of(kind: type, place: str) -> Iterator[str]:

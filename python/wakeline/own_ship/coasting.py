@@ -18,6 +18,7 @@ from .times import NEAR_S, held
 
 HIDDEN_S, HIDDEN_EVERY_S = 60.0, 150.0
 HORIZONS_S = (10.0, 30.0, 60.0)
+"""Times without positions after which `hold_out` takes the errors, s."""
 _SETTLED_S = 120.0
 
 

@@ -11,6 +11,7 @@ from wakeline.recording.nmea import BottomTrack, GroundSpeed, WaterSpeed
 from .times import between
 
 FIX_STD_M = 3.0
+"""Standard deviation of a GNSS position, per axis, m."""
 VELOCITY_STD_MPS = 0.3  # over ground: filtered by the receiver, or rotated by the heading
 UNDER_WAY_MPS = 1.5
 

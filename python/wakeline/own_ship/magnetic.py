@@ -25,7 +25,9 @@ class MagneticOffset(NamedTuple):
 
 
 NO_OFFSET = MagneticOffset(0.0, 0.0)
-ANY_OFFSET = MagneticOffset(0.0, np.deg2rad(15.0))  # variations over the seas
+"""That of true headings."""
+ANY_OFFSET = MagneticOffset(0.0, float(np.deg2rad(15.0)))
+"""That of magnetic headings of unknown variation, as variations spread over the seas."""
 
 
 def wants_offset(part: NavigationLog) -> bool:

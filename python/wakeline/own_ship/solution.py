@@ -30,7 +30,9 @@ LONGEST_STEP_S, MOST_STEPS = 2.0, 100  # between two readings, however far apart
 GATE_PROBABILITY = 0.999
 
 COASTING_S = 5.0
-JUMP_M, JUMPED_S = 50.0, 60.0
+JUMP_M = 50.0
+"""Distance of a position from the solution above which it is a jump, m."""
+JUMPED_S = 60.0
 
 
 @dataclass(frozen=True)

@@ -25,12 +25,16 @@ PALETTE = (
     *("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"),
     *("#56B4E9", "#882255", "#999933", "#332288", "#44AA99"),
 )
+"""Colors of tracks and curves, in turn."""
 MODE_PALETTE = ("#DDDDDD", "#EE8866", "#77AADD", "#44BB99", "#FFAABB", "#BBCC33", "#99DDFF")
 DANGER = "#E00000"
 INK = "#1F2328"
+"""Color of text, truth and own ship."""
 MUTED = "#8C959F"
+"""Color of axes, plots and side notes."""
 GRID = "#E4E7EB"
 TEXT_PT = 9
+"""Size of the text of a picture, points."""
 _DOTS_PER_IN = 160
 _ROOM_ABOVE = 1.08
 _GAP_STEPS = 4.0

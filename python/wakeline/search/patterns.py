@@ -184,6 +184,7 @@ PATTERNS = {
     "expanding_square": _Kind(_square_points_m, _square_sides_m, "expanding square"),
     "sector": _Kind(_sector_points_m, _sector_sides_m, "sector search"),
 }
+"""Search patterns by name, as the IAMSAR Manual has them."""
 
 
 def is_regular(p: Pattern) -> bool:

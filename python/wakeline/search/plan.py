@@ -20,6 +20,7 @@ from .drift import Cloud
 from .patterns import Pattern, datum_square
 
 DETECTION_LAWS = ("definite_range", "inverse_cube", "exponential")
+"""Names of the laws of detection, by lateral range, of a `Unit`."""
 
 _LENGTH_ROUNDS = 4
 

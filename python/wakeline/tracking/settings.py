@@ -65,6 +65,7 @@ def _explained(section: str) -> dict[str, str]:
 KEYS = {section: _explained(section) for section in _CLASSES}
 
 VESSELS = {"any": wl.VesselModels, "ships": wl.VesselModels.ships}
+"""Motion models by the vessels they are for."""
 _ABOUT = {
     "radar": "Parameters of the radar.",
     "tracker": "Parameters of the tracker; one set of defaults for all radars.",

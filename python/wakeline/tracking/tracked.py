@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MODE_NAMES = ("cruising", "steady", "restless", "turning")
+"""The motion models of `wakeline.VesselModels`, in the order of their probabilities."""
 _COLUMNS = ("track_id", "status", "time_s", "mean", "covariance", "mode_probability", "nis")
 
 
