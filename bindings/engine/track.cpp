@@ -4,6 +4,9 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,14 +25,16 @@ void define_strobe_tracker(py::module_& track);  // strobe_tracker.cpp
 
 namespace {
 
-using Course = Ekf<WanderingCourse>;
-using Turn = Ekf<CoordinatedTurnRate>;
+template <std::size_t Index>
+using VesselFilter = std::decay_t<decltype(std::declval<const VesselImm&>().filter<Index>())>;
+using VesselModes = std::make_index_sequence<VesselImm::kModels>;
 
 /// The same over filters composed at run time.
 PyEstimator<AnyImm> as_any_imm(const VesselImm& imm) {
-  AnyImm any(ModeChain<kRuntimeModes>(imm.chain()),
-             AnyFilterBank({AnyFilter(imm.filter<0>()), AnyFilter(imm.filter<1>()),
-                            AnyFilter(imm.filter<2>()), AnyFilter(imm.filter<3>())}));
+  const auto filters = [&]<std::size_t... Index>(std::index_sequence<Index...>) {
+    return std::vector{AnyFilter(imm.filter<Index>())...};
+  };
+  AnyImm any(ModeChain<kRuntimeModes>(imm.chain()), AnyFilterBank(filters(VesselModes{})));
   any.set_initial_mode_probability(
       ModeVector<double, kRuntimeModes>(imm.initial_mode_probability()));
   return any;
@@ -42,17 +47,16 @@ PyEstimator<AnyImm> any_vessel_imm(const Radar& radar, const VesselModels& model
 /// The reverse, of an estimator that is made like it.
 std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
   if (any.bank().size() != VesselImm::kModels) return std::nullopt;
-  const auto filter = [&](int k) -> const auto& { return any.bank().filter(k).variant(); };
-  const auto* cruising = std::get_if<Course>(&filter(0));
-  const auto* steady = std::get_if<Course>(&filter(1));
-  const auto* restless = std::get_if<Course>(&filter(2));
-  const auto* turning = std::get_if<Turn>(&filter(3));
-  if (cruising == nullptr || steady == nullptr || restless == nullptr || turning == nullptr)
-    return std::nullopt;
-  VesselImm imm(ModeChain<VesselImm::kModels>(any.chain()), Course(cruising->motion()),
-                Course(steady->motion()), Course(restless->motion()), Turn(turning->motion()));
-  imm.set_initial_mode_probability(any.initial_mode_probability());
-  return imm;
+  return [&]<std::size_t... Index>(std::index_sequence<Index...>)->std::optional<VesselImm> {
+    const std::tuple filters(
+        std::get_if<VesselFilter<Index>>(&any.bank().filter(int(Index)).variant())...);
+    if (((std::get<Index>(filters) == nullptr) || ...)) return std::nullopt;
+    VesselImm imm(ModeChain<VesselImm::kModels>(any.chain()),
+                  VesselFilter<Index>(std::get<Index>(filters)->motion())...);
+    imm.set_initial_mode_probability(any.initial_mode_probability());
+    return imm;
+  }
+  (VesselModes{});
 }
 
 /// A tracker with an estimator given by hand.
@@ -377,7 +381,7 @@ void define_track(py::module_& parent) {
       m, "TrackerConfig", "The rules by which tracks live; one set of defaults for all radars.",
       {.writable = true});
   define_struct<VesselModels>(
-      m, "VesselModels", "The motion models of a tracker: cruising, steady, restless and turning.",
+      m, "VesselModels", "The motion models of a tracker: of ships, of craft, and of agile craft.",
       {.writable = true})
       .def_static("ships", &VesselModels::ships, "Models of merchant ships under way.");
 

@@ -122,7 +122,7 @@ def test_lines_are_json_of_what_the_tracker_has():
         assert row["identity_time_s"] is None
     assert name in {row["name"] for row in rows.values()}
     modes = session.status()["modes"]
-    assert list(modes) == ["cruising", "steady", "restless", "turning"]
+    assert tuple(modes) == wl.tracking.MODE_NAMES
     assert all(one["lower"] < 2.0 < one["upper"] for one in modes.values())
 
 

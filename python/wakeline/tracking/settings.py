@@ -79,8 +79,8 @@ _ZONES = """\
 """
 _MANY = 2**31
 _MOST_OCTETS = 2**20
-_TRACKER_OCTETS = 3800, 65  # of a track, and of a plot of a scan
-_STROBE_OCTETS = 13500  # of a track
+_TRACKER_OCTETS = 6600, 65  # of a track, and of a plot of a scan
+_STROBE_OCTETS = 21900  # of a track
 _MUCH_OCTETS = 100e6
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*"""
 _DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}){{20,}}")  # costs its square

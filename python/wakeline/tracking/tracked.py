@@ -21,7 +21,10 @@ from .settings import Settings, read_settings
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MODE_NAMES = ("cruising", "steady", "restless", "turning")
+MODE_NAMES = (
+    *("cruising", "steady", "restless", "turning"),
+    *("weaving", "port_turn", "starboard_turn"),
+)
 """The motion models of `wakeline.VesselModels`, in the order of their probabilities."""
 _COLUMNS = ("track_id", "status", "time_s", "mean", "covariance", "mode_probability", "nis")
 

@@ -95,7 +95,9 @@ TEST(AnyFilterBank, EqualsTheTrackersEstimatorBitForBit) {
   AnyImm composed(
       ModeChain<kRuntimeModes>(models.chain()),
       AnyFilterBank({AnyFilter(Ekf(models.cruising(20.0))), AnyFilter(Ekf(models.steady(20.0))),
-                     AnyFilter(Ekf(models.restless(20.0))), AnyFilter(Ekf(models.turning(20.0)))}));
+                     AnyFilter(Ekf(models.restless(20.0))), AnyFilter(Ekf(models.turning(20.0))),
+                     AnyFilter(Ekf(models.weaving(20.0))), AnyFilter(Ekf(models.port_turn())),
+                     AnyFilter(Ekf(models.starboard_turn()))}));
   composed.set_initial_mode_probability(
       ModeVector<double, kRuntimeModes>(models.initial_mode_probability()));
   expect_same_bits(vessel_imm(radar, models), composed,

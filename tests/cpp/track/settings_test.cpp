@@ -129,7 +129,10 @@ TEST(VesselModelSettings, NamesWhatItRejects) {
       {"restless_course_psd_rad2s", &VesselModels::restless_course_psd_rad2s},
       {"turning_psd_m2s3", &VesselModels::turning_psd_m2s3},
       {"turning_course_psd_rad2s", &VesselModels::turning_course_psd_rad2s},
-      {"turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3}};
+      {"turn_rate_psd_rad2s3", &VesselModels::turn_rate_psd_rad2s3},
+      {"weaving_psd_m2s3", &VesselModels::weaving_psd_m2s3},
+      {"agile_turn_psd_m2s3", &VesselModels::agile_turn_psd_m2s3},
+      {"agile_turn_rate_rad_s", &VesselModels::agile_turn_rate_rad_s}};
   for (const auto& [name, field] : noises)
     for (const double value : {-1.0, kNan, kInf})
       expect(name, [field = field, value](VesselModels& models) { models.*field = value; });
@@ -141,13 +144,18 @@ TEST(VesselModelSettings, NamesWhatItRejects) {
       {"settling_s", &VesselModels::settling_s},
       {"steady_sojourn_s", &VesselModels::steady_sojourn_s},
       {"restless_sojourn_s", &VesselModels::restless_sojourn_s},
-      {"turning_sojourn_s", &VesselModels::turning_sojourn_s}};
+      {"turning_sojourn_s", &VesselModels::turning_sojourn_s},
+      {"agile_time_s", &VesselModels::agile_time_s},
+      {"weaving_sojourn_s", &VesselModels::weaving_sojourn_s},
+      {"agile_turn_sojourn_s", &VesselModels::agile_turn_sojourn_s}};
   for (const auto& [name, field] : times)
     for (const double value : {0.0, -1.0, 1e-300, 1e300, kNan, kInf})
       expect(name, [field = field, value](VesselModels& models) { models.*field = value; });
-  for (const double value : {-0.1, 1.1, kNan})
+  for (const double value : {-0.1, 1.1, kNan}) {
     expect("cruising_probability",
            [=](VesselModels& models) { models.cruising_probability = value; });
+    expect("agile_probability", [=](VesselModels& models) { models.agile_probability = value; });
+  }
 }
 
 }  // namespace

@@ -112,7 +112,56 @@ TEST(VesselModels, LeaveAndSettleAsOftenAsTold) {
   EXPECT_NEAR(1.0 - chance(2, 2), step_s / models.restless_sojourn_s, 1e-9);
   EXPECT_NEAR(1.0 - chance(3, 3), step_s / models.turning_sojourn_s, 1e-9);
   EXPECT_LT(chance(2, 0) + chance(3, 0), 1e-9) << "only a steady vessel is taken to cruise";
+  for (const int agile : {4, 5, 6})
+    EXPECT_NEAR(chance.row(agile).segment(1, 3).sum(), step_s / models.agile_time_s, 1e-9);
+  EXPECT_NEAR(chance(4, 5) + chance(4, 6), step_s / models.weaving_sojourn_s, 1e-7);
+  EXPECT_NEAR(chance(5, 4), step_s / models.agile_turn_sojourn_s, 1e-7);
+  EXPECT_DOUBLE_EQ(chance(6, 4), chance(5, 4));
   EXPECT_DOUBLE_EQ(models.initial_mode_probability().sum(), 1.0);
+}
+
+/// A boat that goes straight for 25 s and turns for 12.5 s, to either side in turn, at 6 degrees a
+/// second.
+Vec<double, 2> weaving_velocity_mps(double time_s) {
+  constexpr double kLeg_s = 25.0, kTurn_s = 12.5, kSpeed_mps = 15.0;
+  const double leg = std::floor(time_s / (kLeg_s + kTurn_s));
+  const double turning_s = std::max(time_s - leg * (kLeg_s + kTurn_s) - kLeg_s, 0.0);
+  const bool to_port = std::fmod(leg, 2.0) == 1.0;
+  const double course_rad = deg(6.0) * (to_port ? kTurn_s - turning_s : turning_s);
+  return kSpeed_mps * Vec<double, 2>(std::cos(course_rad), std::sin(course_rad));
+}
+
+TEST(VesselModels, ExpectACraftThatWeavesToTurnAgain) {
+  const auto error_m = [](const VesselModels& models, double& agile) {
+    constexpr double kStep_s = 0.1, kFrom_s = 100.0;
+    constexpr int kScans = 100;
+    double squared = 0.0;
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      Sea sea(seed, kCoarse);
+      VesselTracker tracker = tracker_of(models);
+      Vec<double, 2> place_m(3000.0, 2000.0);
+      double time_s = 0.0;
+      for (int k = 0; k < kScans; ++k) {
+        for (; time_s < kScan_s * k - kStep_s / 2; time_s += kStep_s)
+          place_m += kStep_s * weaving_velocity_mps(time_s + kStep_s / 2);
+        const Plot plot = sea.plot(place_m, kScan_s * k);
+        EXPECT_EQ(tracker.process(kScan_s * k, {&plot, 1}).status, Status::kOk);
+        const Track* track = track_at(tracker, place_m, 500.0);
+        if (time_s < kFrom_s || track == nullptr) continue;
+        ++count;
+        squared += (track->position() - place_m).squaredNorm();
+        agile += tracker.estimator_of(*track).mode_probability().tail<3>().sum();
+      }
+    }
+    agile /= count;
+    return std::sqrt(squared / count);
+  };
+  double agile = 0.0, none = 0.0;
+  const double with_m = error_m({}, agile), without_m = error_m({.agile_probability = 0.0}, none);
+  EXPECT_LT(with_m, 0.9 * without_m);
+  EXPECT_GT(agile, 0.8);
+  EXPECT_EQ(none, 0.0);
 }
 
 TEST(VesselModelsOfShips, HoldAShipThatAltersHerCourse) {

@@ -173,7 +173,7 @@ class Imm {
     started_ = true;
   }
 
-  /// The reverse, for the first `count` lanes.
+  /// `gather` reversed, for the first `count` lanes.
   template <class OfLane>
   [[gnu::always_inline]] void scatter(int count, const OfLane& of_lane) const noexcept {
     scatter_lanes<kModels>(probability_.data(), count,
@@ -187,6 +187,13 @@ class Imm {
       scatter_lanes(
           belief, count, [&](int k) -> auto& { return *each[std::size_t(k)]; });
     });
+  }
+
+  /// Copies the state of an estimator over the same models, without what only a step needs.
+  void copy_state_from(const Imm& other) noexcept
+      requires(requires(Bank& bank) { bank.template get<0>().to_assign(); }) {
+    gather([&](int) -> const Imm& { return other; });
+    started_ = other.started_;
   }
 
   /// Saves or restores beliefs and mode probabilities.
@@ -307,23 +314,11 @@ class Imm {
   }
 
   /// The chain's transition over a step, or over the step of each lane.
-  [[gnu::cold, gnu::noinline]] void read_transition(Scalar dt_s) noexcept {
-    if constexpr (kLanesOf<Scalar> == 1) {
+  [[gnu::noinline]] void read_transition(Scalar dt_s) noexcept {
+    if constexpr (kLanesOf<Scalar> == 1)
       transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
-    } else {
-      for (int k = 0; k < kLanesOf<Scalar>; ++k) {
-        if (k > 0 && dt_s[k] == dt_s[0]) continue;
-        const auto of_lane = chain_.transition(double(dt_s[k]));
-        for (int j = 0; j < bank_.size(); ++j)
-          for (int i = 0; i < bank_.size(); ++i) {
-            const auto probability = RealOf<Scalar>(of_lane(i, j));
-            if (k == 0)
-              transition_(i, j) = probability;
-            else
-              transition_(i, j).set(k, probability);
-          }
-      }
-    }
+    else
+      transition_ = chain_.transition(dt_s);
   }
 
   /// Fills `weight_(i, j) = P(mode i before | mode j now)` and returns P(mode j now).

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "wakeline/core/require.hpp"
+#include "wakeline/simd/scalar.hpp"
 
 namespace wakeline {
 
@@ -129,9 +130,11 @@ class ModeChain {
     return continuous_ ? std::optional(matrix_) : std::nullopt;
   }
 
-  /// P(dt), row-stochastic.
-  [[nodiscard]] Matrix transition(double dt_s) const noexcept {
-    return continuous_ ? exponential(dt_s) : matrix_;
+  /// P(dt), row-stochastic, or that of each lane.
+  template <class Scalar>
+  [[nodiscard]] ModeMatrix<Scalar, K> transition(Scalar dt_s) const noexcept {
+    if (continuous_) return exponential(dt_s);
+    return matrix_.template cast<Scalar>();
   }
 
  private:
@@ -218,14 +221,17 @@ class ModeChain {
 
   // Sums in loops, so that their order does not depend on whether K is a template parameter.
 
-  static double row_sum(const Matrix& matrix, Eigen::Index row) noexcept {
-    double sum = 0.0;
+  template <class Scalar>
+  static Scalar row_sum(const ModeMatrix<Scalar, K>& matrix, Eigen::Index row) noexcept {
+    Scalar sum = Scalar(0);
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) sum += matrix(row, j);
     return sum;
   }
 
-  static Matrix product(const Matrix& a, const Matrix& b) noexcept {
-    Matrix result = Matrix::Zero(a.rows(), a.cols());
+  template <class Scalar, class Right>
+  static ModeMatrix<Scalar, K> product(const ModeMatrix<Scalar, K>& a,
+                                       const ModeMatrix<Right, K>& b) noexcept {
+    ModeMatrix<Scalar, K> result = ModeMatrix<Scalar, K>::Zero(a.rows(), a.cols());
     for (Eigen::Index j = 0; j < a.cols(); ++j)
       for (Eigen::Index k = 0; k < a.cols(); ++k)
         for (Eigen::Index i = 0; i < a.rows(); ++i) result(i, j) += a(i, k) * b(k, j);
@@ -234,26 +240,47 @@ class ModeChain {
 
   /// exp(G dt) by uniformisation, whose terms are all positive, over a step halved until it is
   /// short, then squared.
-  Matrix exponential(double dt_s) const noexcept {
+  template <class Scalar>
+  ModeMatrix<Scalar, K> exponential(Scalar dt_s) const noexcept {
+    using Result = ModeMatrix<Scalar, K>;
     const Matrix identity = Matrix::Identity(modes(), modes());
+    Result sum = identity.template cast<Scalar>();
     const double fastest = -matrix_.diagonal().minCoeff();
-    if (!(fastest * dt_s > 0.0)) return identity;
-    int halvings = 0;
+    if (!(fastest > 0.0)) return sum;
     // Expected number of (uniformised) jumps in the step.
-    double rate = std::min(fastest * dt_s, std::numeric_limits<double>::max());
-    for (; rate > 0.5; ++halvings) rate /= 2;
-    const Matrix jump = identity + matrix_ / fastest;
-    Matrix term = identity;
-    Matrix sum = identity;
-    for (int n = 1; n <= 14; ++n) {
-      term = product(term, jump) * (rate / n);
-      sum += term;
+    constexpr double kMost = std::numeric_limits<double>::max();
+    const Scalar jumps = Scalar(fastest) * dt_s;
+    Scalar rate = select(jumps < Scalar(kMost), jumps, Scalar(kMost));
+    rate = select(dt_s > Scalar(0), rate, Scalar(0));
+    Scalar halvings = Scalar(0);
+    for (auto is_long = rate > Scalar(0.5); any(is_long); is_long = rate > Scalar(0.5)) {
+      halvings += select(is_long, Scalar(1), Scalar(0));
+      rate *= select(is_long, Scalar(0.5), Scalar(1));
     }
-    for (int n = 0; n <= halvings; ++n) {
-      if (n > 0) sum = product(sum, sum);
-      for (Eigen::Index i = 0; i < modes(); ++i) sum.row(i) /= row_sum(sum, i);
+    const Matrix jump = identity + matrix_ / fastest;
+    Result term = sum;
+    for (int n = 1; n <= 14; ++n) {
+      term = product(term, jump);
+      const Scalar share = rate / Scalar(n);
+      for (Eigen::Index i = 0; i < term.size(); ++i) term.data()[i] *= share;
+      for (Eigen::Index i = 0; i < term.size(); ++i) sum.data()[i] += term.data()[i];
+    }
+    normalize_rows(sum);
+    for (Scalar n = Scalar(0); any(n < halvings); n += Scalar(1)) {
+      Result squared = product(sum, sum);
+      normalize_rows(squared);
+      for (Eigen::Index i = 0; i < sum.size(); ++i)
+        sum.data()[i] = select(n < halvings, squared.data()[i], sum.data()[i]);
     }
     return sum;
+  }
+
+  template <class Scalar>
+  static void normalize_rows(ModeMatrix<Scalar, K>& matrix) noexcept {
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      const Scalar sum = row_sum(matrix, i);
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j) matrix(i, j) /= sum;
+    }
   }
 
   Matrix matrix_;  ///< transition per prediction, or the generator G (1/s)

@@ -38,7 +38,7 @@ struct Picture {
   static constexpr double kSurelyExists = 0.999;       ///< a target that was designated or reports
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 14;
+  static constexpr std::uint32_t kArchiveVersion = 16;
 
   Picture(std::span<const Radar> of, const TrackerConfig& with, const Estimator& made_of)
       : config(validated(with)),
@@ -298,7 +298,12 @@ struct Picture {
     next_tentative_id = other.next_tentative_id;
     identities = other.identities;
     tracks.copy_from(other.tracks);
-    tracks.for_each_slot([&](int slot) { estimator_at(slot) = other.estimator_of(slot); });
+    tracks.for_each_slot([&](int slot) {
+      if constexpr (requires(Estimator & estimator) { estimator.copy_state_from(estimator); })
+        estimator_at(slot).copy_state_from(other.estimator_of(slot));
+      else
+        estimator_at(slot) = other.estimator_of(slot);
+    });
   }
 
   /// Saves or restores; the settings are compared, not restored.

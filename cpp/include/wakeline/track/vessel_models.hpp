@@ -10,15 +10,18 @@
 
 namespace wakeline {
 
-/// The motion models that a tracker uses by default: cruising, steady, restless and
-/// turning. Their noise grows with the square of the speed, so that one set serves a drifting ferry
-/// and a boat at play.
+/// The motion models that a tracker uses by default: cruising, steady, restless and turning, and
+/// those of agile craft: weaving, turning to port and turning to starboard. The noise of the first
+/// four grows with the square of the speed, so that one set serves a drifting ferry and a boat at
+/// play.
 ///
 /// A vessel that cruises is a ship under way, which keeps course and speed for a quarter of an
 /// hour; the others are craft, which do anything at any time. Most vessels are taken for ships when
 /// they are first seen, and for craft as soon as they move like craft; one that goes steadily for
-/// long enough is taken for a ship again. `ships()` is another set, where ships alter course as
-/// ships do.
+/// long enough is taken for a ship again. Few craft are agile: these go straight and turn at once,
+/// at a fixed rate, again and again. As craft seldom become agile or cease to be, a vessel that has
+/// turned like that is expected to turn again. `ships()` is another set, where ships alter course
+/// as ships do and no craft is agile.
 struct VesselModels {
   double cruising_psd_m2s3 = 1e-4;
   double cruising_course_psd_rad2s = 1e-6;
@@ -36,6 +39,13 @@ struct VesselModels {
   double steady_sojourn_s = 300.0;
   double restless_sojourn_s = 100.0;
   double turning_sojourn_s = 80.0;
+  double weaving_psd_m2s3 = 0.1;
+  double agile_turn_psd_m2s3 = 0.5;
+  double agile_turn_rate_rad_s = 0.14;
+  double agile_probability = 0.01;
+  double agile_time_s = 600.0;
+  double weaving_sojourn_s = 10.0;
+  double agile_turn_sojourn_s = 5.0;
 
   static constexpr auto fields() noexcept {
     using V = VesselModels;
@@ -73,7 +83,21 @@ struct VesselModels {
         field("restless_sojourn_s", &V::restless_sojourn_s, kTime, "s",
               "Mean time for which a vessel is restless."),
         field("turning_sojourn_s", &V::turning_sojourn_s, kTime, "s",
-              "Mean time for which a vessel turns."));
+              "Mean time for which a vessel turns."),
+        field("weaving_psd_m2s3", &V::weaving_psd_m2s3, between(0, 1e4), "m²/s³",
+              "Acceleration noise of an agile vessel that goes straight."),
+        field("agile_turn_psd_m2s3", &V::agile_turn_psd_m2s3, between(0, 1e4), "m²/s³",
+              "Acceleration noise of an agile vessel in a turn."),
+        field("agile_turn_rate_rad_s", &V::agile_turn_rate_rad_s, between(0, 10), "rad/s",
+              "Turn rate of an agile vessel, to port or to starboard."),
+        field("agile_probability", &V::agile_probability, kProbability, "1",
+              "Probability that a vessel which does not cruise is agile."),
+        field("agile_time_s", &V::agile_time_s, kTime, "s",
+              "Mean time for which a vessel is agile."),
+        field("weaving_sojourn_s", &V::weaving_sojourn_s, kTime, "s",
+              "Mean time until an agile vessel turns."),
+        field("agile_turn_sojourn_s", &V::agile_turn_sojourn_s, kTime, "s",
+              "Mean time for which an agile vessel turns."));
   }
 
   /// Of ships under way: straight for twenty minutes, alterations of course within a minute. Three
@@ -94,7 +118,8 @@ struct VesselModels {
             .settling_s = 80.0,
             .steady_sojourn_s = 600.0,
             .restless_sojourn_s = 60.0,
-            .turning_sojourn_s = 60.0};
+            .turning_sojourn_s = 60.0,
+            .agile_probability = 0.0};
   }
 
   friend bool operator==(const VesselModels&, const VesselModels&) = default;
@@ -122,22 +147,36 @@ struct VesselModels {
                 turn_rate_psd_rad2s3 > 0.0 ? 2.0 * prior_variance / turn_rate_psd_rad2s3 : 0.0};
   }
 
-  /// Who stops cruising is in the modes of craft as often as craft are; these change to each other
-  /// at equal rates, and a steady vessel also to cruising.
-  [[nodiscard]] ModeChain<4> chain() const {
-    const Vec<double, 3> rate_per_s = 1.0 / craft_sojourn_s();
-    Mat<double, 4, 4> generator_per_s = Mat<double, 4, 4>::Zero();
-    generator_per_s.row(0).tail<3>() = share_of_craft().transpose() / cruising_sojourn_s;
-    generator_per_s.bottomRightCorner<3, 3>().colwise() = 0.5 * rate_per_s;
-    generator_per_s(1, 0) = 1.0 / settling_s;
-    generator_per_s.diagonal().setZero();
-    generator_per_s.diagonal() = -generator_per_s.rowwise().sum();
-    return ModeChain<4>::from_generator(generator_per_s);
+  [[nodiscard]] WanderingCourse weaving(double max_speed_mps) const noexcept {
+    return {weaving_psd_m2s3, 0.0, max_speed_mps};
+  }
+  [[nodiscard]] CoordinatedTurn port_turn() const noexcept {
+    return {-agile_turn_rate_rad_s, WhiteAcceleration{agile_turn_psd_m2s3}};
+  }
+  [[nodiscard]] CoordinatedTurn starboard_turn() const noexcept {
+    return {agile_turn_rate_rad_s, WhiteAcceleration{agile_turn_psd_m2s3}};
   }
 
-  [[nodiscard]] Vec<double, 4> initial_mode_probability() const noexcept {
-    Vec<double, 4> probability;
-    probability << cruising_probability, (1.0 - cruising_probability) * share_of_craft();
+  /// Who stops cruising is in the other modes as often as vessels that do not cruise are. Craft
+  /// change to each other mode at equal rates, and a steady one also to cruising and to weaving; an
+  /// agile vessel turns to either side alike, and is a common craft again after a time.
+  [[nodiscard]] ModeChain<7> chain() const {
+    Mat<double, 7, 7> generator_per_s = Mat<double, 7, 7>::Zero();
+    generator_per_s.row(0).tail<6>() = share_of_others().transpose() / cruising_sojourn_s;
+    generator_per_s.block<3, 3>(1, 1).colwise() = 0.5 * (1.0 / craft_sojourn_s()).matrix();
+    generator_per_s(1, 0) = 1.0 / settling_s;
+    generator_per_s(1, 4) = agile_probability / agile_time_s;
+    generator_per_s.block<3, 3>(4, 1).rowwise() = share_of_craft().transpose() / agile_time_s;
+    generator_per_s.row(4).tail<2>().setConstant(0.5 / weaving_sojourn_s);
+    generator_per_s.col(4).tail<2>().setConstant(1.0 / agile_turn_sojourn_s);
+    generator_per_s.diagonal().setZero();
+    generator_per_s.diagonal() = -generator_per_s.rowwise().sum();
+    return ModeChain<7>::from_generator(generator_per_s);
+  }
+
+  [[nodiscard]] Vec<double, 7> initial_mode_probability() const noexcept {
+    Vec<double, 7> probability;
+    probability << cruising_probability, (1.0 - cruising_probability) * share_of_others();
     return probability;
   }
 
@@ -145,15 +184,28 @@ struct VesselModels {
   [[nodiscard]] Eigen::Array3d craft_sojourn_s() const noexcept {
     return {steady_sojourn_s, restless_sojourn_s, turning_sojourn_s};
   }
-  /// How much of its time a craft spends in each mode.
+  /// How much of its time a craft that is not agile spends in each of its modes.
   [[nodiscard]] Vec<double, 3> share_of_craft() const noexcept {
     return craft_sojourn_s() / craft_sojourn_s().sum();
+  }
+  /// The same of an agile one.
+  [[nodiscard]] Vec<double, 3> share_of_agile() const noexcept {
+    const Vec<double, 3> sojourn_s{weaving_sojourn_s, 0.5 * agile_turn_sojourn_s,
+                                   0.5 * agile_turn_sojourn_s};
+    return sojourn_s / sojourn_s.sum();
+  }
+  /// The same of all vessels that do not cruise.
+  [[nodiscard]] Vec<double, 6> share_of_others() const noexcept {
+    Vec<double, 6> share;
+    share << (1.0 - agile_probability) * share_of_craft(), agile_probability * share_of_agile();
+    return share;
   }
 };
 
 /// The estimator made of them.
 using VesselImm = Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<WanderingCourse>,
-                                 Ekf<CoordinatedTurnRate>>>;
+                                 Ekf<CoordinatedTurnRate>, Ekf<WanderingCourse>,
+                                 Ekf<CoordinatedTurn>, Ekf<CoordinatedTurn>>>;
 
 /// The estimator of a tracker for this radar. Throws `std::invalid_argument` on a setting that
 /// makes no sense.
@@ -166,7 +218,8 @@ inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {})
   const double max_speed_mps = radar.max_speed_mps;
   VesselImm imm(models.chain(), Ekf(models.cruising(max_speed_mps)),
                 Ekf(models.steady(max_speed_mps)), Ekf(models.restless(max_speed_mps)),
-                Ekf(models.turning(max_speed_mps)));
+                Ekf(models.turning(max_speed_mps)), Ekf(models.weaving(max_speed_mps)),
+                Ekf(models.port_turn()), Ekf(models.starboard_turn()));
   imm.set_initial_mode_probability(models.initial_mode_probability());
   return imm;
 }
