@@ -23,7 +23,7 @@ fail() { say "$*"; exit 1; }
 # Ubuntu has its browser as a snap alone; there the tests of the screen are skipped.
 is_debian() { grep -qs '^ID=debian$' /etc/os-release; }
 has_cmake() { cmake --version >/dev/null 2>&1; }
-has_make() { ninja --version >/dev/null 2>&1 || make --version >/dev/null 2>&1; }
+has_make() { make --version >/dev/null 2>&1; }  # what CMake builds with unless another is named
 has_header() { [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]]; }
 has_sanitizers() { clang++-14 -fsanitize=address,undefined -x c++ -o /dev/null - <<<'int main() {}' >/dev/null 2>&1; }
 
@@ -62,7 +62,7 @@ PYTHON
 
 missing_packages() {
   has_cmake || echo cmake
-  has_make || echo ninja-build
+  has_make || echo make
   find_compiler || echo g++-12-or-newer
   find_python || echo python3 python3-dev python3-venv
   has_header eigen3/Eigen/Core || echo libeigen3-dev
