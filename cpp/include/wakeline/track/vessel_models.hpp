@@ -40,10 +40,10 @@ struct VesselModels {
   double restless_sojourn_s = 100.0;
   double turning_sojourn_s = 80.0;
   double weaving_psd_m2s3 = 0.1;
-  double agile_turn_psd_m2s3 = 0.5;
-  double agile_turn_rate_rad_s = 0.14;
-  double agile_probability = 0.01;
-  double agile_time_s = 600.0;
+  double agile_turn_psd_m2s3 = 1.2;
+  double agile_turn_rate_rad_s = 0.13;
+  double agile_probability = 0.015;
+  double agile_time_s = 1000.0;
   double weaving_sojourn_s = 10.0;
   double agile_turn_sojourn_s = 5.0;
 
