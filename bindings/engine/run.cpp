@@ -54,6 +54,90 @@ int run_in_lanes(const Recordings& all, const Kernel& kernel) {
   });
 }
 
+/// A filter and a linear sensor, as lanes ask for them.
+class FilterSteps : public LinearSteps {
+ public:
+  FilterSteps(const AnyFilter& filter, const RuntimeSensor& sensor)
+      : filter_(filter), sensor_(sensor) {}
+
+  void matrices(double dt_s, AnyBelief::Covariance& f,
+                AnyBelief::Covariance& q) const noexcept override {
+    std::visit(
+        [&]<class Filter>(const Filter& filter) {
+          if constexpr (std::is_same_v<Filter, CustomFilter>) {
+            f = filter.motion()->jacobian(filter.estimate().mean, dt_s);
+            q = filter.motion()->process_noise(filter.estimate().mean, dt_s);
+          } else if constexpr (kIsLinear<Filter>) {
+            const auto step = step_matrices(filter.motion(), dt_s);
+            f = step.f;
+            q = step.q;
+          }
+        },
+        filter_.variant());
+  }
+
+  Step<kMostNumbers> update(AnyBelief& belief,
+                            const Vec<double, kMostNumbers>& z) const noexcept override {
+    AnyFilter one = filter_;
+    (void)one.assign(belief);
+    const Step<kMostNumbers> step = one.update(sensor_, z);
+    belief = one.estimate();
+    return step;
+  }
+
+  /// True over a linear motion model.
+  static bool are_of(const AnyFilter& any) {
+    return std::visit(
+        []<class Filter>(const Filter& filter) {
+          if constexpr (std::is_same_v<Filter, CustomFilter>)
+            return filter.motion()->linear();
+          else
+            return kIsLinear<Filter>;
+        },
+        any.variant());
+  }
+
+ private:
+  template <class Filter>
+  static constexpr bool kIsLinear = requires {
+    requires LinearMotionModel<typename Filter::Motion>;
+  };
+
+  const AnyFilter& filter_;
+  const RuntimeSensor& sensor_;
+};
+
+/// The same of whole readings of a `LinearSensor`.
+int run_linear_in_lanes(const AnyFilter& filter, const Recordings& all) {
+  const LaneKernels* kernels = lane_kernels();
+  const auto* const sensor = std::get_if<RuntimeSensor>(&all.sensor);
+  if (kernels == nullptr || all.in.runs < 2 || all.in.covariance != nullptr || sensor == nullptr ||
+      sensor->custom() == nullptr || !sensor->linear() || !FilterSteps::are_of(filter))
+    return 0;
+  for (const double *z = all.in.z, *end = z + all.in.runs * all.in.scans * kMostNumbers; z != end;
+       z += kMostNumbers)
+    for (int m = 1; m < sensor->numbers(); ++m)
+      if ((z[m] == z[m]) != (z[0] == z[0])) return 0;
+
+  const FilterSteps steps(filter, *sensor);
+  const StateRows& rows = rows_of(filter.layout());
+  const StateRows reads = sensor->reads();
+  const ReadingJacobian of_read = sensor->jacobian(AnyBelief::Mean::Zero(reads.states));
+  ReadingJacobian h = ReadingJacobian::Zero(sensor->numbers(), rows.states);
+  for (int k = 0; k < reads.states; ++k)
+    h.col(rows.row_of(reads.components[static_cast<std::size_t>(k)])) = of_read.col(k);
+  std::vector<AnyBelief> starts;
+  for (const AnyBelief& start : all.starts) {
+    AnyFilter one = filter;
+    (void)one.start(start);
+    starts.push_back(one.estimate());
+  }
+  const ThreadShare threads(all.in.runs * all.in.scans / static_cast<std::size_t>(kernels->lanes));
+  kernels->run_linear({steps, filter.layout(), h, sensor->custom()->noise(), all.in, starts,
+                       all.out, threads.count()});
+  return kernels->lanes;
+}
+
 /// In this thread alone where steps call Python, which other threads would wait for.
 template <class Estimator>
 int run_each(const Estimator& estimator, const Recordings& recordings) {
@@ -304,10 +388,10 @@ RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
 }
 
 int run_all(const AnyFilter& filter, const Recordings& recordings) {
-  const int lanes =
-      run_in_lanes(recordings, [&](const LaneKernels& kernels, const LaneRecordings& all) {
-        return kernels.run_filter(filter, all);
-      });
+  int lanes = run_in_lanes(recordings, [&](const LaneKernels& kernels, const LaneRecordings& all) {
+    return kernels.run_filter(filter, all);
+  });
+  if (lanes == 0) lanes = run_linear_in_lanes(filter, recordings);
   return lanes > 0 ? lanes : run_each(filter, recordings);
 }
 

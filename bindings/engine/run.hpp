@@ -156,9 +156,12 @@ RunResult
     mean (..., T, N), covariance (..., T, N, N), innovation (..., T, M), nis, log_likelihood and
     status (..., T); mode_probability (..., T, K) of multiple-model estimators and turn_rate_rad_s
     (..., T, K) of adaptive turn rates, else None. lanes: how many filters were stepped side by side in
-    one register: recordings of a filter or an Imm, hypotheses of a ModeHistory. It is 1 for a
-    single recording, a sensor other than of a whole position, a LinearMotion and every other
-    estimator, and 0 where each step calls functions in Python, which takes a hundred times as long.
+    one register: recordings of a filter or an Imm, hypotheses of a ModeHistory. Those of a
+    LinearMotion need the states of a linear model of the engine, and zeros in F where that has
+    them; or, of a single filter, a LinearSensor and no covariance of each reading. It is 1 for a
+    single recording, readings that lack a part, any other sensor than of a whole position and every
+    other estimator, and 0 where each step calls functions in Python, which takes a hundred times as
+    long.
 
 Raises
 ------

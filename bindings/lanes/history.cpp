@@ -7,11 +7,13 @@ namespace wakeline::python {
 bool run_history(const AnyModeHistory& any, const LaneRecordings& recordings) {
   return std::visit(
       [&]<class Filter>(const ModeHistory<Filter>& history) {
-        using Packed = InLanesOf<Filter>;
-        if constexpr (kForPacks<typename Packed::Motion>) {
+        if constexpr (kForPacks<typename Filter::Motion>) {
+          using Packed =
+              decltype(in_lanes(std::declval<Filter>(), std::declval<Filter>().motion()));
           std::vector<Packed> filters;
-          history.bank().for_each(
-              [&](int, const Filter& filter) { filters.push_back(in_lanes(filter)); });
+          history.bank().for_each([&](int, const Filter& filter) {
+            filters.push_back(in_lanes(filter, filter.motion()));
+          });
           ModeHistory packed(history.tree(), history.chain(),
                              UniformBank<Packed>(std::span<const Packed>(filters)));
           packed.set_initial_mode_probability(history.initial_mode_probability());

@@ -17,39 +17,19 @@ namespace wakeline::python {
 
 using Lanes = Pack<double, kNativeLanes<double>>;
 
-/// A motion model as lanes have it: constant velocity is a turn at rate zero, which saves its
-/// kernels.
-template <class Motion>
-const Motion& lane_motion(const Motion& motion) noexcept {
-  return motion;
+/// A filter over packs with the same parameters, over a motion model.
+template <class Motion, class Old>
+Ekf<Motion, Lanes> in_lanes(const Ekf<Old>&, const Motion& motion) {
+  return Ekf<Motion, Lanes>(motion);
 }
-inline CoordinatedTurn lane_motion(const ConstantVelocity& motion) noexcept {
-  return {.turn_rate_rad_s = 0.0, .noise = motion.noise};
+template <class Motion, class Old>
+Ukf<Motion, Lanes> in_lanes(const Ukf<Old>& filter, const Motion& motion) {
+  return Ukf<Motion, Lanes>(motion, filter.unscented());
 }
-
-/// A filter over packs with the same parameters.
-template <class Motion>
-auto in_lanes(const Ekf<Motion>& filter) {
-  return Ekf<std::decay_t<decltype(lane_motion(filter.motion()))>, Lanes>(
-      lane_motion(filter.motion()));
+template <class Motion, class Old>
+SquareRootUkf<Motion, Lanes> in_lanes(const SquareRootUkf<Old>& filter, const Motion& motion) {
+  return SquareRootUkf<Motion, Lanes>(motion, filter.unscented());
 }
-template <class Motion>
-auto in_lanes(const Ukf<Motion>& filter) {
-  return Ukf<std::decay_t<decltype(lane_motion(filter.motion()))>, Lanes>(
-      lane_motion(filter.motion()), filter.unscented());
-}
-template <class Motion>
-auto in_lanes(const SquareRootUkf<Motion>& filter) {
-  return SquareRootUkf<std::decay_t<decltype(lane_motion(filter.motion()))>, Lanes>(
-      lane_motion(filter.motion()), filter.unscented());
-}
-
-/// Its gains are not of packs.
-template <int Order>
-void in_lanes(const AlphaBetaFilter<Order>&) = delete;
-
-template <class Filter>
-using InLanesOf = decltype(in_lanes(std::declval<const Filter&>()));
 
 /// The starts of the recordings `first`, `first + 1`, ...
 template <int N, class Scalar>
@@ -92,6 +72,7 @@ bool run_from(const Estimator& prototype, const LaneRecordings& recordings) {
 
 bool run_filter(const AnyFilter& filter, const LaneRecordings& recordings);
 bool run_imm(const AnyImm& imm, const LaneRecordings& recordings);
+void run_linear(const LinearRecordings& recordings);
 bool run_history(const AnyModeHistory& history, const LaneRecordings& recordings);
 
 }  // namespace wakeline::python

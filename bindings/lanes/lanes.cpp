@@ -30,8 +30,8 @@ std::unique_ptr<VesselLanes> vessels(const VesselImm& prototype) {
 
 PYBIND11_MODULE(WAKELINE_LANES_MODULE, m) {
   using namespace wakeline::python;
-  static constexpr LaneKernels kKernels{wakeline::kNativeLanes<double>, &run_filter, &run_imm,
-                                        &run_history, &vessels};
+  static constexpr LaneKernels kKernels{
+      wakeline::kNativeLanes<double>, &run_filter, &run_imm, &run_linear, &run_history, &vessels};
   m.doc() = "Estimators in lanes, for one instruction set.";
   m.attr("kernels") = pybind11::capsule(static_cast<const void*>(&kKernels), "wakeline.lanes");
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "wakeline/batch/run.hpp"
+#include "wakeline/catalog/custom_sensor.hpp"
 #include "wakeline/catalog/filters.hpp"
 #include "wakeline/catalog/mode_history.hpp"
 #include "wakeline/catalog/sensors.hpp"
@@ -29,6 +30,31 @@ struct LaneRecordings {
   int threads;
 };
 
+/// A filter over a linear motion model, with a linear sensor.
+class LinearSteps {
+ public:
+  virtual ~LinearSteps() = default;
+  /// F and Q over a step.
+  virtual void matrices(double dt_s, AnyBelief::Covariance& f,
+                        AnyBelief::Covariance& q) const noexcept = 0;
+  /// Updates a belief with a reading.
+  virtual Step<kMostNumbers> update(AnyBelief& belief,
+                                    const Vec<double, kMostNumbers>& z) const noexcept = 0;
+};
+
+/// Recordings of such a filter: readings in rows of `kMostNumbers`, none of which lacks a part, z =
+/// H x + v, v ~ N(0, R) of its whole state.
+struct LinearRecordings {
+  const LinearSteps& filter;
+  StateLayout layout;
+  ReadingJacobian h;
+  ReadingMatrix r;
+  const RunInput& in;
+  const std::vector<AnyBelief>& starts;  ///< over the state
+  const RunOutput& out;
+  int threads;
+};
+
 /// Steps of many estimators of a tracker.
 class VesselLanes {
  public:
@@ -38,12 +64,15 @@ class VesselLanes {
 };
 
 /// What such a module does. A run returns false, and does nothing, where the estimator is one that
-/// has no lanes: over a motion model that is not for packs, or with starts of several layouts.
+/// has no lanes: over a motion model that is not for packs, of matrices with other zeros than those
+/// of the catalogue, or with starts of several layouts.
 struct LaneKernels {
   int lanes;
   /// Recordings side by side.
   bool (*run_filter)(const AnyFilter& filter, const LaneRecordings& recordings);
   bool (*run_imm)(const AnyImm& imm, const LaneRecordings& recordings);
+  /// The same of matrices that are known at run time.
+  void (*run_linear)(const LinearRecordings& recordings);
   /// The hypotheses of a recording side by side.
   bool (*run_history)(const AnyModeHistory& history, const LaneRecordings& recordings);
   std::unique_ptr<VesselLanes> (*vessels)(const VesselImm& prototype);

@@ -159,13 +159,64 @@ def test_models_of_different_states_mix_by_their_names():
     assert np.trace(smoothed.covariance[10]) < np.trace(result.covariance[10])
 
 
-def test_many_recordings_and_threads_give_the_results_of_one():
-    custom = wl.Kalman(by_matrices(STRAIGHT))
-    z = np.random.default_rng(5).normal(5000.0, 500.0, (40, 50, 2))
-    together = custom.run(z, DT_S, POSITION, START)
-    for k in (0, 17, 39):
-        alone = custom.run(z[k], DT_S, POSITION, START)
-        np.testing.assert_array_equal(together.mean[k], alone.mean)
+FIRM = wl.LinearSensor(np.eye(2), np.diag([625.0, 900.0]), reads=["x", "y"])
+SPEEDS = wl.LinearSensor([[0, 1, 0, 0], [0, 0, 0, 1], [0.5, 0, 0.5, 0]], np.diag([1.0, 1.0, 400.0]))
+DRAWN_ASIDE = wl.LinearMotion(  # no model of the engine has this F
+    lambda dt_s: np.array(straight_matrix(dt_s)) + 0.01 * dt_s * np.eye(4)[::-1], straight_noise
+)
+
+
+def many_and_one():
+    """Estimators with sensors, and whether they run in lanes."""
+    straight, turn = by_matrices(STRAIGHT), by_matrices(TURN)
+    accelerated = by_matrices(ACCELERATED, ACCELERATED_STATE)
+    chain = wl.ModeChain.from_sojourn_s([60.0, 30.0])
+    for kind in (wl.Kalman, wl.Ekf, wl.Ukf):
+        for motion in (straight, accelerated):
+            yield kind(motion), POSITION, True
+        for motion in (straight, ACCELERATED, DRAWN_ASIDE):
+            yield kind(motion), FIRM, True
+        yield kind(DRAWN_ASIDE), POSITION, False
+    yield wl.SquareRootUkf(STRAIGHT), FIRM, True
+    yield wl.Kalman(straight), SPEEDS, True
+    yield wl.Imm([wl.Ekf(straight), wl.Ekf(turn)], chain), POSITION, True
+    yield wl.Imm([wl.Ukf(accelerated), wl.Ekf(TURN)], chain), POSITION, True
+    yield wl.Imm([wl.Ekf(straight), wl.Ekf(turn)], chain), FIRM, False
+
+
+@pytest.mark.parametrize("gate", [None, wl.ChiSquareGate(probability=0.7)])
+@pytest.mark.parametrize(("estimator", "sensor", "in_lanes"), list(many_and_one()))
+def test_many_recordings_and_threads_give_the_results_of_one(estimator, sensor, in_lanes, gate):
+    random = np.random.default_rng(5)
+    z = random.normal(5000.0, 40.0, (19, 30, sensor.measurements))
+    if sensor is SPEEDS:
+        z[..., :2] /= 500.0
+    z[random.random(z.shape[:2]) < 0.1] = np.nan
+    steps_s, push = random.uniform(0.0, 4.0, 30), random.normal(0.0, 0.5, (30, 2))
+    starts = [wl.Gaussian(random.normal(START.mean, 50.0), START.covariance) for _ in z]
+    starts[3] = wl.Gaussian(START.mean, np.diag([1e11, 100.0, 1e11, 100.0]))  # P - K S Kᵀ cancels
+
+    def run(of, start):
+        return estimator.run(of, steps_s, sensor, start, acceleration_mps2=push, gate=gate)
+
+    together = run(z, starts)
+    assert together.lanes == (wl.lanes() if in_lanes else 1)
+    for k, start in enumerate(starts):
+        alone = run(z[k], start)
+        for name in ("mean", "covariance", "innovation", "nis", "log_likelihood", "status"):
+            one, all_of_them = getattr(alone, name), getattr(together, name)[k]
+            rtol = 1e-6 if k == 3 else 1e-9
+            scale = np.nanmax(np.abs(one), initial=1.0)
+            np.testing.assert_allclose(all_of_them, one, rtol=rtol, atol=rtol * scale)
+
+
+def test_a_reading_without_a_part_is_read_one_recording_at_a_time():
+    z = np.random.default_rng(5).normal(5000.0, 500.0, (9, 5, 2))
+    z[4, 2, 1] = np.nan
+    together = wl.Kalman(STRAIGHT).run(z, DT_S, FIRM, START)
+    assert together.lanes == 1
+    alone = wl.Kalman(STRAIGHT).run(z[4], DT_S, FIRM, START)
+    np.testing.assert_array_equal(together.mean[4], alone.mean)
 
 
 def test_a_tracker_of_custom_models_makes_the_tracks_of_the_models():

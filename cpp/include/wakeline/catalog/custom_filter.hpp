@@ -25,22 +25,24 @@
 namespace wakeline {
 
 /// `Cholesky` of up to `kMaxStates` rows: `at(i, j)` is an element of the lower triangle.
-struct RuntimeCholesky {
+template <class Scalar>
+struct RuntimeCholeskyOf {
   int size = 0;
-  bool ok = false;
-  double lower[kMaxStates][kMaxStates];
-  double inverse_diagonal[kMaxStates];
+  MaskOf<Scalar> ok = false;
+  Scalar lower[kMaxStates][kMaxStates];
+  Scalar inverse_diagonal[kMaxStates];
 
   template <class At>
-  RuntimeCholesky(int rows, const At& at) noexcept : size(rows), ok(true) {
+  RuntimeCholeskyOf(int rows, const At& at) noexcept : size(rows), ok(true) {
+    using std::sqrt;
     for (int j = 0; j < size; ++j) {
-      double pivot = at(j, j);
+      Scalar pivot = at(j, j);
       for (int k = 0; k < j; ++k) pivot -= lower[j][k] * lower[j][k];
-      ok = ok && pivot > 0.0 && pivot <= std::numeric_limits<double>::max();
-      lower[j][j] = std::sqrt(pivot);
-      inverse_diagonal[j] = 1.0 / lower[j][j];
+      ok = ok && pivot > Scalar(0) && pivot <= Scalar(std::numeric_limits<double>::max());
+      lower[j][j] = sqrt(pivot);
+      inverse_diagonal[j] = Scalar(1) / lower[j][j];
       for (int i = j + 1; i < size; ++i) {
-        double sum = at(i, j);
+        Scalar sum = at(i, j);
         for (int k = 0; k < j; ++k) sum -= lower[i][k] * lower[j][k];
         lower[i][j] = sum * inverse_diagonal[j];
       }
@@ -48,7 +50,7 @@ struct RuntimeCholesky {
   }
 
   /// v = L⁻¹ v.
-  void whiten(double* v) const noexcept {
+  void whiten(Scalar* v) const noexcept {
     for (int i = 0; i < size; ++i) {
       for (int k = 0; k < i; ++k) v[i] -= lower[i][k] * v[k];
       v[i] *= inverse_diagonal[i];
@@ -56,13 +58,15 @@ struct RuntimeCholesky {
   }
 
   /// v = L⁻ᵀ v: of a row vᵀ, vᵀ L⁻¹.
-  void unwhiten(double* v) const noexcept {
+  void unwhiten(Scalar* v) const noexcept {
     for (int i = size - 1; i >= 0; --i) {
       for (int k = i + 1; k < size; ++k) v[i] -= lower[k][i] * v[k];
       v[i] *= inverse_diagonal[i];
     }
   }
 };
+
+using RuntimeCholesky = RuntimeCholeskyOf<double>;
 
 /// The numbers that there are of a reading, beside a belief N(x, P): innovation v, its covariance S
 /// and the covariance of state and innovation, P Hᵀ.

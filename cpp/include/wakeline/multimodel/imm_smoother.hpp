@@ -193,12 +193,19 @@ class ImmSmoother {
   static Status smooth(std::span<ImmScan<Bank>> scans,
                        std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) {
     for (std::size_t k = scans.size(); k-- > 1;) {
-      const Status status = acceleration_mps2.empty()
-                                ? step(scans[k - 1].updated, scans[k])
-                                : step(scans[k - 1].updated, scans[k], acceleration_mps2[k]);
+      const auto known =
+          acceleration_mps2.empty() ? acceleration_mps2 : acceleration_mps2.subspan(k, 1);
+      const Status status = smooth(scans[k - 1].updated, scans[k], known);
       if (status != Status::kOk) return status;
     }
     return Status::kOk;
+  }
+
+  /// The same of the Imm after one scan, given the smoothed one after the next; `acceleration_mps2`
+  /// is that between them, if known.
+  static Status smooth(Imm<Bank>& now, const ImmScan<Bank>& next,
+                       std::span<const Vec<Scalar, 2>> acceleration_mps2 = {}) {
+    return acceleration_mps2.empty() ? step(now, next) : step(now, next, acceleration_mps2[0]);
   }
 
  private:
