@@ -122,16 +122,17 @@ inline bool takes_readings(const AnyEstimator& estimator) {
   return std::holds_alternative<AnyImm>(estimator.variant());
 }
 
-/// True where a reading of so many numbers, of which there are some, has a part missing.
-inline bool has_partial(const DoubleArray& z, int numbers) {
-  if (z.ndim() == 0 || z.shape(z.ndim() - 1) != numbers) return false;
-  const double* number = z.data();
-  for (const double* const end = number + z.size(); number != end; number += numbers) {
-    int missing = 0;
-    for (int m = 0; m < numbers; ++m) missing += number[m] != number[m];
-    if (missing != 0 && missing != numbers) return true;
-  }
-  return false;
+/// True where a reading, one of some rows of `width` numbers, has a part missing. Without a branch
+/// for each reading, which would take a tenth of a run in lanes.
+inline bool has_partial(const double* z, std::size_t rows, std::size_t numbers, std::size_t width) {
+  bool partial = false;
+  for (const double* const end = z + rows * width; z != end; z += width)
+    for (std::size_t m = 1; m < numbers; ++m) partial |= (z[m] != z[m]) != (z[0] != z[0]);
+  return partial;
+}
+inline bool has_partial(const DoubleArray& z, std::size_t numbers) {
+  if (z.ndim() == 0 || z.shape(z.ndim() - 1) != static_cast<py::ssize_t>(numbers)) return false;
+  return has_partial(z.data(), static_cast<std::size_t>(z.size()) / numbers, numbers, numbers);
 }
 
 /// True where each update calls Python.

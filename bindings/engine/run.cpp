@@ -114,16 +114,16 @@ int run_linear_in_lanes(const AnyFilter& filter, const Recordings& all) {
   if (kernels == nullptr || all.in.runs < 2 || all.in.covariance != nullptr || sensor == nullptr ||
       sensor->custom() == nullptr || !sensor->linear() || !FilterSteps::are_of(filter))
     return 0;
-  for (const double *z = all.in.z, *end = z + all.in.runs * all.in.scans * kMostNumbers; z != end;
-       z += kMostNumbers)
-    for (int m = 1; m < sensor->numbers(); ++m)
-      if ((z[m] == z[m]) != (z[0] == z[0])) return 0;
+  const int numbers = sensor->numbers();
+  if (has_partial(all.in.z, all.in.runs * all.in.scans, static_cast<std::size_t>(numbers),
+                  kMostNumbers))
+    return 0;
 
   const FilterSteps steps(filter, *sensor);
   const StateRows& rows = rows_of(filter.layout());
   const StateRows reads = sensor->reads();
   const ReadingJacobian of_read = sensor->jacobian(AnyBelief::Mean::Zero(reads.states));
-  ReadingJacobian h = ReadingJacobian::Zero(sensor->numbers(), rows.states);
+  ReadingJacobian h = ReadingJacobian::Zero(numbers, rows.states);
   for (int k = 0; k < reads.states; ++k)
     h.col(rows.row_of(reads.components[static_cast<std::size_t>(k)])) = of_read.col(k);
   std::vector<AnyBelief> starts;
@@ -150,26 +150,27 @@ int run_each(const Estimator& estimator, const Recordings& recordings) {
   return 1;
 }
 
-/// The readings of a `RuntimeSensor` and their innovations, in rows of `kMostNumbers`.
+/// The readings of a `RuntimeSensor` in rows of `kMostNumbers`, whose place their innovations take.
 struct PaddedReadings {
+  const double* z;
   std::size_t rows, numbers;
-  std::vector<double> z, innovation;
+  std::vector<double> padded;
 
-  PaddedReadings(const double* from, std::size_t rows_, std::size_t numbers_)
-      : rows(rows_),
+  PaddedReadings(const double* z_, std::size_t rows_, std::size_t numbers_)
+      : z(z_),
+        rows(rows_),
         numbers(numbers_),
-        z(rows * kMostNumbers, std::numeric_limits<double>::quiet_NaN()),
-        innovation(z.size()) {
+        padded(rows * kMostNumbers, std::numeric_limits<double>::quiet_NaN()) {
     for (std::size_t row = 0; row < rows; ++row)
-      std::copy_n(from + row * numbers, numbers, z.data() + row * kMostNumbers);
+      std::copy_n(z + row * numbers, numbers, padded.data() + row * kMostNumbers);
   }
 
   /// NaN for missing numbers.
   void write_innovation(double* to) const {
     for (std::size_t row = 0; row < rows; ++row)
       for (std::size_t m = 0; m < numbers; ++m) {
-        const std::size_t k = row * kMostNumbers + m;
-        to[row * numbers + m] = z[k] == z[k] ? innovation[k] : z[k];
+        const std::size_t k = row * numbers + m;
+        to[k] = z[k] == z[k] ? padded[row * kMostNumbers + m] : z[k];
       }
   }
 };
@@ -309,7 +310,7 @@ RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
   std::optional<PaddedReadings> padded;
   if (readings != nullptr) {
     padded.emplace(z.data(), in.runs * in.scans, static_cast<std::size_t>(numbers));
-    in.z = padded->z.data();
+    in.z = padded->padded.data();
   }
   if (arguments.covariance) {
     require_covariances(*arguments.covariance, z);
@@ -372,7 +373,7 @@ RunResult run_recordings(const RunLayout& layout, const RunArguments& arguments,
                       result.covariance.mutable_data(),
                       modes.mutable_data(),
                       layout.turn_rates ? rates.mutable_data() : nullptr,
-                      padded ? padded->innovation.data() : result.innovation.mutable_data(),
+                      padded ? padded->padded.data() : result.innovation.mutable_data(),
                       result.nis.mutable_data(),
                       result.log_likelihood.mutable_data(),
                       result.status.mutable_data()};

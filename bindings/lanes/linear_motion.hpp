@@ -65,6 +65,7 @@ class LinearInLanes {
     constexpr Pattern<kN> kCommon = common_pattern();
     for (std::size_t scan = 0; scan < in.scans; ++scan) {
       if (scan > 0 && in.dt_s[scan] == in.dt_s[scan - 1]) continue;
+      if (check_time_step(in.dt_s[scan]) != Status::kOk) continue;  // a step that is not made
       const Matrix<double> f = matrix(in.dt_s[scan]);
       for (int i = 0; i < kN; ++i)
         for (int j = 0; j < kN; ++j)
