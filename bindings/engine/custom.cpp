@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "wakeline/catalog/custom_filter.hpp"
@@ -174,6 +176,45 @@ class Functions {
   std::vector<py::object> functions_;
 };
 
+/// Numbers in and out of a compiled function, matrices row by row: of a motion model with the step.
+using MotionPointer = void (*)(const double* x, double dt_s, double* result);
+using SensorPointer = void (*)(const double* x, double* result);
+
+/// The address of a compiled function, of `numba.cfunc` or `ctypes`; null of another one. Throws
+/// ValueError where it is compiled for other arguments.
+template <class Pointer>
+Pointer compiled(const char* role, const char* type, const py::object& function) {
+  constexpr bool kSteps = std::is_same_v<Pointer, MotionPointer>;
+  const py::object pointer = py::getattr(function, "ctypes", function);
+  if (!py::hasattr(pointer, "argtypes")) return nullptr;
+  const py::module_ ctypes = py::module_::import("ctypes");
+  const py::object number = ctypes.attr("c_double");
+  const py::object numbers = ctypes.attr("POINTER")(number);
+  const py::tuple wanted = kSteps ? py::tuple(py::make_tuple(numbers, number, numbers))
+                                  : py::tuple(py::make_tuple(numbers, numbers));
+  const py::object given = pointer.attr("argtypes");
+  if (!pointer.attr("restype").is_none() || given.is_none() || !py::tuple(given).equal(wanted))
+    throw py::value_error(
+        described(role, type, function) + " must be compiled as void(" +
+        (kSteps ? "double* x, double dt_s, double* result" : "double* x, double* result") +
+        "), got the arguments " + py::str(given).cast<std::string>() + " and the result " +
+        py::str(pointer.attr("restype")).cast<std::string>());
+  return reinterpret_cast<Pointer>(
+      ctypes.attr("cast")(pointer, ctypes.attr("c_void_p")).attr("value").cast<std::uintptr_t>());
+}
+
+/// What a compiled function writes, NaN where it writes nothing; `call` calls it.
+template <class Result, class Call>
+Result written(int rows, int columns, const Call& call) noexcept {
+  double numbers[kMaxStates * kMaxStates];
+  std::fill_n(numbers, rows * columns, kNaN);
+  call(numbers);
+  Result result(rows, columns);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) result(i, j) = numbers[columns * i + j];
+  return result;
+}
+
 /// Standard deviations by component, of those that a start over [x, vx, y, vy] does not give.
 class Priors {
  public:
@@ -226,6 +267,7 @@ class LinearMotion : public MotionOfFunctions {
 
   [[nodiscard]] const char* type() const noexcept override { return "LinearMotion"; }
   [[nodiscard]] bool linear() const noexcept override { return true; }
+  [[nodiscard]] bool calls() const noexcept override { return false; }  // but for a new step
   [[nodiscard]] State transition(const State& x, double dt_s) const noexcept override {
     return product_of(of_step(dt_s).f, x);
   }
@@ -273,35 +315,54 @@ class FunctionMotion : public MotionOfFunctions {
   FunctionMotion(const py::function& transition, const py::function& noise, const StateRows& rows,
                  const std::optional<py::function>& jacobian,
                  const std::map<std::string, double>& prior_std)
-      : MotionOfFunctions({transition, noise, or_none(jacobian)}, rows, prior_std) {}
+      : MotionOfFunctions({transition, noise, or_none(jacobian)}, rows, prior_std) {
+    for (std::size_t k = 0; k < kRoles.size(); ++k)
+      compiled_[k] = compiled<MotionPointer>(kRoles[k], type(), function(k));
+  }
 
   [[nodiscard]] const char* type() const noexcept override { return "FunctionMotion"; }
   [[nodiscard]] bool linear() const noexcept override { return false; }
+  [[nodiscard]] bool calls() const noexcept override {
+    for (std::size_t k = 0; k < kRoles.size(); ++k)
+      if (compiled_[k] == nullptr && !function(k).is_none()) return true;
+    return false;
+  }
   [[nodiscard]] State transition(const State& x, double dt_s) const noexcept override {
+    if (compiled_[0] != nullptr)
+      return written<State>(states(), 1, [&](double* to) { compiled_[0](x.data(), dt_s, to); });
     return guarded<State>(fault(), State::Constant(states(), kNaN),
-                          [&] { return to_state(called(0, "transition", x, dt_s, {states()})); });
+                          [&] { return to_state(called(0, x, dt_s, {states()})); });
   }
   [[nodiscard]] Matrix jacobian(const State& x, double dt_s) const noexcept override {
     if (function(2).is_none()) return CustomMotion::jacobian(x, dt_s);
-    return square(2, "jacobian", x, dt_s);
+    return square(2, x, dt_s);
   }
   [[nodiscard]] Matrix process_noise(const State& x, double dt_s) const noexcept override {
-    return square(1, "process_noise", x, dt_s);
+    return square(1, x, dt_s);
   }
 
  private:
-  [[nodiscard]] DoubleArray called(std::size_t k, const char* role, const State& x, double dt_s,
-                                   const std::vector<py::ssize_t>& shape) const {
-    return numbers_of(described(role, type(), function(k)), function(k)(to_array(x), dt_s), shape);
+  static constexpr std::array kRoles{"transition", "process_noise", "jacobian"};
+
+  [[nodiscard]] std::string named(std::size_t k) const {
+    return described(kRoles[k], type(), function(k));
   }
-  [[nodiscard]] Matrix square(std::size_t k, const char* role, const State& x,
-                              double dt_s) const noexcept {
+  [[nodiscard]] DoubleArray called(std::size_t k, const State& x, double dt_s,
+                                   const std::vector<py::ssize_t>& shape) const {
+    return numbers_of(named(k), function(k)(to_array(x), dt_s), shape);
+  }
+  [[nodiscard]] Matrix square(std::size_t k, const State& x, double dt_s) const noexcept {
+    if (compiled_[k] != nullptr)
+      return written<Matrix>(states(), states(),
+                             [&](double* to) { compiled_[k](x.data(), dt_s, to); });
     return guarded<Matrix>(fault(), Matrix::Constant(states(), states(), kNaN), [&] {
-      const Matrix matrix = to_rows_and_columns(called(k, role, x, dt_s, {states(), states()}));
-      if (k == 1) require_covariance(described(role, type(), function(k)), matrix, false);
+      const Matrix matrix = to_rows_and_columns(called(k, x, dt_s, {states(), states()}));
+      if (k == 1) require_covariance(named(k), matrix, false);
       return matrix;
     });
   }
+
+  std::array<MotionPointer, 3> compiled_;
 };
 
 ReadingMatrix to_noise(const DoubleArray& covariance) {
@@ -352,7 +413,9 @@ class FunctionSensor : public PySensor {
       : reads_(reads),
         noise_(to_noise(covariance)),
         angles_(angles),
-        functions_({measure, or_none(jacobian)}) {
+        functions_({measure, or_none(jacobian)}),
+        compiled_{compiled<SensorPointer>("measure", "FunctionSensor", functions_[0]),
+                  compiled<SensorPointer>("jacobian", "FunctionSensor", functions_[1])} {
     for (const int angle : angles)
       require(angle >= 0 && angle < numbers(), "angles",
               ("indices from 0 to " + std::to_string(numbers() - 1)).c_str(), angle);
@@ -361,8 +424,12 @@ class FunctionSensor : public PySensor {
   [[nodiscard]] int numbers() const noexcept override { return static_cast<int>(noise_.rows()); }
   [[nodiscard]] const StateRows& reads() const noexcept override { return reads_; }
   [[nodiscard]] bool linear() const noexcept override { return false; }
-  [[nodiscard]] bool calls() const noexcept override { return true; }
+  [[nodiscard]] bool calls() const noexcept override {
+    return compiled_[0] == nullptr || (compiled_[1] == nullptr && !functions_[1].is_none());
+  }
   [[nodiscard]] ReadingVector measure(const State& x) const noexcept override {
+    if (compiled_[0] != nullptr)
+      return written<ReadingVector>(numbers(), 1, [&](double* to) { compiled_[0](x.data(), to); });
     return guarded<ReadingVector>(fault(), ReadingVector::Constant(numbers(), kNaN), [&] {
       return ReadingVector(to_state(called(0, "measure", x, {numbers()})));
     });
@@ -373,6 +440,9 @@ class FunctionSensor : public PySensor {
       return CustomMotion::central_differences<ReadingJacobian>(
           x, [&](const State& at) { return residual(measure(at), centre); });
     }
+    if (compiled_[1] != nullptr)
+      return written<ReadingJacobian>(numbers(), reads_.states,
+                                      [&](double* to) { compiled_[1](x.data(), to); });
     return guarded<ReadingJacobian>(fault(),
                                     ReadingJacobian::Constant(numbers(), reads_.states, kNaN), [&] {
                                       return to_rows_and_columns<ReadingJacobian>(
@@ -401,6 +471,7 @@ class FunctionSensor : public PySensor {
   ReadingMatrix noise_;
   std::vector<int> angles_;
   Functions functions_;
+  std::array<SensorPointer, 2> compiled_;
 };
 
 /// An immutable object that copies share.
@@ -446,9 +517,10 @@ void define_motions(py::module_& m) {
       m, "LinearMotion",
       (R"(A linear motion model by its matrices: x' = F(dt) x + w, w ~ N(0, Q(dt)).
 
-A new step calls both functions once; their results are kept for the steps after it, so that a run
-takes at most three times as long as with a model of the engine, one recording at a time
-(`RunResult.lanes` is 1).
+A new step calls both functions once; their results are kept for the steps after it. One recording
+takes about twice as long as with a model of the engine; many run side by side as those do where the
+state is that of a linear model of the engine and F has its zeros, or the sensor is a LinearSensor
+(`RunResult.lanes`).
 
 Parameters
 ----------
@@ -508,7 +580,9 @@ Bar-Shalom, Li, Kirubarajan, 5.2.1.)")
       (R"(A motion model by Python functions: x' = f(x, dt) + w, w ~ N(0, Q(x, dt)), for Ekf and Ukf.
 
 Each step calls the functions, so that a run takes as long as they do (`RunResult.lanes` is 0): some
-10 µs a step. A linear model is quicker as LinearMotion.
+10 µs a step. A linear model is quicker as LinearMotion. A compiled function, of `numba.cfunc` or
+`ctypes`, is called without Python: void(double* x, double dt_s, double* result), a matrix row by
+row. Its result is not checked; a step whose belief is not finite fails with `Status.not_finite`.
 
 Parameters
 ----------
@@ -640,7 +714,8 @@ Bar-Shalom, Li, Kirubarajan, 5.2.1.)")
       m, "FunctionSensor",
       (R"(A sensor by Python functions: z = h(x_r) + v, v ~ N(0, R), of 1 to 4 numbers, for Ekf and Ukf.
 
-Each update calls the functions, so that a run takes as long as they do (`RunResult.lanes` is 0).
+Each update calls the functions, so that a run takes as long as they do (`RunResult.lanes` is 0). A
+compiled function, as of FunctionMotion, is void(double* x, double* result).
 
 Parameters
 ----------

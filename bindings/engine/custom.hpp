@@ -78,6 +78,8 @@ class PyMotion : public CustomMotion {
  public:
   using CustomMotion::CustomMotion;
   [[nodiscard]] virtual const char* type() const noexcept = 0;
+  /// True where a step calls Python.
+  [[nodiscard]] virtual bool calls() const noexcept = 0;
   [[nodiscard]] Fault& fault() const noexcept { return fault_; }
 
  private:
@@ -129,7 +131,7 @@ void raise_fault(const Estimator& estimator) {
 template <class Estimator>
 bool calls_python(const Estimator& estimator) {
   bool calls = false;
-  for_each_custom(estimator, [&](const PyMotion& motion) { calls = calls || !motion.linear(); });
+  for_each_custom(estimator, [&](const PyMotion& motion) { calls = calls || motion.calls(); });
   return calls;
 }
 

@@ -1,6 +1,7 @@
 """Motion models and sensors by matrices and functions in Python, beside those of the engine."""
 
 import copy
+import ctypes
 import pickle
 
 import numpy as np
@@ -208,6 +209,22 @@ def test_many_recordings_and_threads_give_the_results_of_one(estimator, sensor, 
             rtol = 1e-6 if k == 3 else 1e-9
             scale = np.nanmax(np.abs(one), initial=1.0)
             np.testing.assert_allclose(all_of_them, one, rtol=rtol, atol=rtol * scale)
+
+
+def test_many_recordings_ask_for_the_matrices_of_valid_steps_only():
+    steps_s = []
+
+    def matrix(dt_s):
+        steps_s.append(dt_s)
+        return STRAIGHT.matrix(dt_s)
+
+    custom, dt_s = wl.LinearMotion(matrix, straight_noise), [1.0, -2.0, np.nan, 3.0, 3.0]
+    z = np.full((9, 5, 2), 5000.0)
+    for sensor in (POSITION, FIRM):
+        own, ours = (wl.Kalman(one).run(z, dt_s, sensor, START) for one in (STRAIGHT, custom))
+        assert_same(own, ours)
+        assert ours.lanes == wl.lanes()
+    assert set(steps_s) == {1.0, 3.0}
 
 
 def test_a_reading_without_a_part_is_read_one_recording_at_a_time():
@@ -541,3 +558,63 @@ def test_filters_of_custom_models_are_copied_pickled_and_saved():
     assert again.reads == ["x", "y"]
     assert again.angles == [0]
     np.testing.assert_array_equal(again.measure([1.0, 1.0]), sensor.measure([1.0, 1.0]))
+
+
+NUMBERS = ctypes.POINTER(ctypes.c_double)
+OF_STEP = ctypes.CFUNCTYPE(None, NUMBERS, ctypes.c_double, NUMBERS)
+OF_STATE = ctypes.CFUNCTYPE(None, NUMBERS, NUMBERS)
+
+
+def compiled(function, size, of=OF_STEP):
+    """As `numba.cfunc` makes it, but for its speed: numbers in and out by their address."""
+
+    def write(x, *rest):
+        *dt_s, result = rest
+        for k, number in enumerate(np.ravel(function(np.array(x[:size]), *dt_s))):
+            result[k] = number
+
+    return of(write)
+
+
+@pytest.mark.parametrize("with_jacobian", [True, False])
+def test_compiled_functions_give_the_results_of_functions(with_jacobian):
+    z = np.stack([readings(seed=seed) for seed in range(5)])
+    prior = {"prior_std": {"omega": TURNING.prior_turn_rate_std_rad_s}}
+    of_python = by_functions(TURNING, TURNING_STATE, with_jacobian, **prior)
+    functions = [TURNING.transition, TURNING.process_noise]
+    if with_jacobian:
+        functions.append(TURNING.jacobian)
+    transition, noise, *jacobian = (compiled(one, 5) for one in functions)
+    custom = wl.FunctionMotion(transition, noise, TURNING_STATE, *jacobian, **prior)
+    radar = wl.FunctionSensor(
+        compiled(RADAR.measure, 2, OF_STATE),
+        np.diag([RADAR.range_std_m, RADAR.bearing_std_rad]) ** 2,
+        reads=["x", "y"],
+        jacobian=compiled(RADAR.jacobian, 2, OF_STATE) if with_jacobian else None,
+        angles=[1],
+    )
+    for kind in (wl.Ekf, wl.Ukf):
+        ours = kind(custom).run(z, DT_S, RADAR, START)
+        assert ours.lanes == 1  # no step waits for Python
+        assert_same(kind(of_python).run(z, DT_S, RADAR, START), ours)
+        heard = kind(custom).run(z, DT_S, radar, START)
+        assert heard.lanes == 1
+        assert_same(ours, heard, rtol=1e-12 if with_jacobian or kind is wl.Ukf else 1e-6)
+
+
+def test_a_compiled_function_that_writes_nothing_fails_its_step():
+    silent = compiled(lambda *_: [], 4)
+    ekf = wl.Ekf(wl.FunctionMotion(silent, silent))
+    ekf.start(START)
+    with pytest.raises(wl.FilterError, match="finite"):
+        ekf.predict(1.0)
+    np.testing.assert_array_equal(ekf.estimate().mean, START.mean)
+
+
+def test_a_function_compiled_for_other_arguments_is_rejected():
+    for_sensor = compiled(bearing_of, 2, OF_STATE)
+    for wrong in (for_sensor, ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(abs)):
+        with pytest.raises(ValueError, match="transition"):
+            wl.FunctionMotion(wrong, straight_noise)
+    with pytest.raises(ValueError, match="measure"):
+        wl.FunctionSensor(OF_STEP(lambda *_: None), [[1.0]], reads=["x", "y"])
