@@ -1100,6 +1100,11 @@ def test_a_changed_octet_is_always_counted(tmp_path_factory, which, place, octet
     dates=st.lists(st.sampled_from([None, "210508", "220508", "010180"]), min_size=40, max_size=40),
     end=st.sampled_from(["\n", ""]),
 )
+@example(
+    times_s=[0, 0, 801, 160],
+    dates=[None, "010180", "210508", "210508", *[None] * 36],
+    end="",
+)
 def test_whatever_the_clock_does_no_fix_is_lost(tmp_path_factory, times_s, dates, end):
     lines = []
     for t, date in zip(times_s, dates, strict=False):

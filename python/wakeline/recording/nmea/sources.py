@@ -169,7 +169,12 @@ def usual_step_s(clock_s: np.ndarray) -> float:
     """The usual step between times of day (n,), over any number of days, in any order."""
     since_s = np.cumsum(wrapped_s(np.diff(clock_s, prepend=clock_s[:1])))
     steps_s = np.diff(np.unique(np.rint(1e3 * since_s))) / 1e3
-    return float(np.median(steps_s)) if len(steps_s) else 0.0
+    return _median(steps_s)
+
+
+def _median(numbers: np.ndarray) -> float:
+    """The median; 0 if there are no numbers, as where no sentence is between those of a source."""
+    return float(np.median(numbers)) if len(numbers) else 0.0
 
 
 def leap_s(usual_s: float) -> float:
@@ -358,13 +363,13 @@ def _judge(
 ) -> None:
     """Keep, correct or reject a source that does not agree with the chosen clock."""
     off_s = _offsets_s(timed, chosen, source)
-    usual_s = float(np.median(off_s))
+    usual_s = _median(off_s)
     zone_s = _ZONE_S * np.rint(usual_s / _ZONE_S)
     name = timed.address[source[0]]
     alive = len(np.unique(timed.clock_s[source])) > 1 and (
         name.endswith("ZDA") or timed.has_fix[source].any()
     )
-    steady = np.mean(np.abs(off_s - zone_s) <= max(reorder_s, 1.0)) >= _AGREEING
+    steady = len(off_s) > 0 and np.mean(np.abs(off_s - zone_s) <= max(reorder_s, 1.0)) >= _AGREEING
     used = chosen[_nearest(timed.line[chosen], timed.line[source])]
     both = (
         f"{_moment(timed, source[0])} in line {timed.line[source[0]]}, where "
@@ -435,7 +440,7 @@ def _settle_zone(timed: Timed, chosen: np.ndarray, beside: Beside | None, choice
 
 def _is_late(timed: Timed, chosen: np.ndarray, source: np.ndarray) -> bool:
     """Whether a source repeats others some seconds or minutes later."""
-    usual_s = float(np.median(_offsets_s(timed, chosen, source)))
+    usual_s = _median(_offsets_s(timed, chosen, source))
     return -_LATEST_REPEAT_S < usual_s < 0.0 and _repeats(timed, chosen, source)
 
 
