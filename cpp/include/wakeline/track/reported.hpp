@@ -85,7 +85,7 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
 /// - The errors of the position that stay from scan to scan.
 inline Gaussian<4> reported(Gaussian<4> kinematics, double gain,
                             const Mat<double, 2, 2>& stays_m2) noexcept {
-  constexpr double kUnseen = 0.05;
+  constexpr double kUnseen = 0.04;
   const double held = std::pow(std::max(1.0 - gain, 0.0), 8);
   const double errs = std::sqrt(1.0 - held / 3.0);
   const Vec<double, 4> scale(errs, 1.0, errs, 1.0);

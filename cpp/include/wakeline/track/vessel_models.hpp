@@ -34,7 +34,7 @@ struct VesselModels {
   double turn_rate_psd_rad2s3 = 0.0003;
   double prior_turn_rate_std_rad_s = 0.2;
   double cruising_probability = 0.95;
-  double cruising_sojourn_s = 1000.0;
+  double cruising_sojourn_s = 900.0;
   double settling_s = 600.0;
   double steady_sojourn_s = 300.0;
   double restless_sojourn_s = 100.0;
