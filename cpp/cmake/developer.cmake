@@ -2,10 +2,13 @@
 set(CMAKE_CXX_SCAN_FOR_MODULES OFF)  # there are none, and newer CMake would read each file twice
 
 # ccache for anyone who has it, unless another launcher is given (-DCMAKE_CXX_COMPILER_LAUNCHER= gives none). The first
-# setting is what precompiled headers ask for, the others let a second clone use what the first one has compiled.
+# setting is what precompiled headers ask for, the others let a second clone use what the first one has compiled. A build
+# folder that began without it stays without, as it would compile everything again.
 if(NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
-  find_program(WAKELINE_CCACHE ccache)
-  mark_as_advanced(WAKELINE_CCACHE)
+  if(NOT DEFINED WAKELINE_CCACHE)
+    find_program(WAKELINE_CCACHE ccache)
+    mark_as_advanced(WAKELINE_CCACHE)
+  endif()
   if(WAKELINE_CCACHE)
     set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
                                     CCACHE_NOHASHDIR=1 "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" "${WAKELINE_CCACHE}")
