@@ -527,13 +527,30 @@ class ScanStages {
     }
   }
 
-  /// Counts a look of the radar at hand, unless it is a miss of a track that another sensor sees.
+  /// The radar whose misses decide how long a track is shown and kept. Of those that look at a
+  /// confirmed one it is the slowest: what hides a target from a fast radar lasts for many of its
+  /// scans, which count together as little as one look.
+  [[nodiscard]] const RadarState& radar_that_counts(const Track& track) const noexcept {
+    const RadarState* slowest = &state();
+    if (!track.confirmed()) return *slowest;
+    for (const RadarState& other : picture_.radars) {
+      const double period_s = other.radar.period_s;
+      if (other.in_use && period_s > slowest->radar.period_s &&
+          state().time_s - other.look(track).looked_s < kSilentPeriods * period_s)
+        slowest = &other;
+    }
+    return *slowest;
+  }
+
+  /// Counts a look of the radar at hand, unless it is a miss of a track that another sensor sees,
+  /// or whose misses another radar counts.
   void note_look(Track& track, bool seen, bool shared) noexcept {
     constexpr double kPeriods = 0.9;  // before the same radar looks again
     const double now_s = state().time_s;
     Look& look = look_at(track);
     look.misses = seen ? 0 : look.misses + 1;
-    if (seen || !(now_s < track.seen_until_s)) track.count(seen, shared);
+    if (seen || (!(now_s < track.seen_until_s) && &radar_that_counts(track) == &state()))
+      track.count(seen, shared);
     if (seen) track.looked_s = std::max(track.looked_s, now_s);
     if (seen && picture_.radars.size() > 1)
       track.seen_until_s = std::max(track.seen_until_s, now_s + kPeriods * state().radar.period_s);
@@ -577,13 +594,17 @@ class ScanStages {
   }
 
   void confirm_and_delete() noexcept {
-    const double shown_misses =
-        state().detection_probability.likely_misses(picture_.config.shown_probability);
+    const auto shown_misses = [&](const RadarState& radar) {
+      return radar.detection_probability.likely_misses(picture_.config.shown_probability);
+    };
+    const double shown_misses_at_hand = shown_misses(state());
     for (const int slot : touched_) {
       Track& track = picture_.tracks.at(slot);
-      if (confirm_or_coast(picture_.config, state().radar, shown_misses, track))
+      const RadarState& counts = radar_that_counts(track);
+      if (confirm_or_coast(picture_.config, counts.radar,
+                           &counts == &state() ? shown_misses_at_hand : shown_misses(counts), track))
         picture_.announce(TrackEvent::kCoasting, track);
-      LossReason reason = reason_to_delete(picture_.config, state().radar, track);
+      LossReason reason = reason_to_delete(picture_.config, counts.radar, track);
       if (reason == LossReason::kUncertain && picture_.scan_time_s < track.seen_until_s)
         reason = LossReason::kNone;  // its vessel will report
       if (reason != LossReason::kNone) lose(track, reason);
