@@ -9,6 +9,7 @@
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/track/association.hpp"
+#include "wakeline/track/mode_positions.hpp"
 
 namespace wakeline {
 
@@ -34,6 +35,17 @@ class TrackReadings {
       fixes_[count_++] = {Fix{plot.nominal_r}, plot.z,
                           (1.0 - outlier_probability) * weights.plot[k]};
       fixes_[count_++] = {Fix{plot.outlier_r}, plot.z, outlier_probability * weights.plot[k]};
+    }
+  }
+
+  /// Has the update take so many plots for one: each reading with so many times its covariance, but
+  /// as probable as with its own.
+  void count_as_one(double plots, const ModePositions& modes) noexcept {
+    for (Alternative<Fix>& reading : std::span(fixes_.data(), count_)) {
+      Mat<double, 2, 2>& r = reading.sensor.covariance_m2;
+      const double likelihood = modes.evidence(reading.z, r).likelihood;
+      r *= plots;
+      if (likelihood > 0.0) reading.weight *= likelihood / modes.evidence(reading.z, r).likelihood;
     }
   }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
+
 #include "wakeline/core/archive.hpp"
 #include "wakeline/track/clutter_map.hpp"
 
@@ -9,8 +11,9 @@ namespace wakeline {
 
 /// What is known of a track as one radar sees it.
 struct Look {
-  double visibility = 1.0;    ///< probability that the radar can see the target
-  double looked_s = 0.0;      ///< when the radar last looked: a plot or a miss
+  double visibility = 1.0;  ///< probability that the radar can see the target
+  double looked_s = 0.0;    ///< when the radar last looked: a plot or a miss
+  double seen_s = -std::numeric_limits<double>::infinity();  ///< when it saw the target last
   double passed_rad = 0.0;    ///< angle of the beam when it last passed the target, unwrapped
   double look_rad = 0.0;      ///< before that angle the beam does not reach its gate
   int misses = 0;             ///< of this radar, in a row
@@ -19,6 +22,7 @@ struct Look {
   void archive(Archive& fields) {
     fields(visibility);
     fields(looked_s);
+    fields(seen_s);
     fields(passed_rad);
     fields(look_rad);
     fields(misses);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "wakeline/core/angle.hpp"
@@ -27,6 +28,7 @@ struct Radar {
   double max_range_m = 0.0;
   double blind_from_rad = 0.0;
   double blind_to_rad = 0.0;
+  double correlation_time_s = 0.0;
 
   static constexpr auto fields() noexcept {
     using R = Radar;
@@ -59,7 +61,25 @@ struct Radar {
             "From this bearing clockwise to `blind_to_rad`, as the radar measures it, targets are "
             "hidden by a mast or by land, and a track there has no misses."),
         field("blind_to_rad", &R::blind_to_rad, kFinite, "rad",
-              "End of the blind sector; equal to `blind_from_rad`: there is none."));
+              "End of the blind sector; equal to `blind_from_rad`: there is none."),
+        field("correlation_time_s", &R::correlation_time_s, between(0, 3600), "s",
+              "Time constant by which the errors of a target's plots are correlated, as an echo "
+              "wanders along a hull: plots that follow each other faster count as one; 0: the "
+              "errors are independent."));
+  }
+
+  /// How many plots of a target count as one, each so long after the one before: the variance of
+  /// the mean of n readings with the correlation ρ = exp(-dt / τ) of neighbors is, over that of
+  /// independent ones,
+  ///
+  ///     (1 + ρ) / (1 - ρ)
+  ///
+  /// for large n. Source: Box, Jenkins, Time Series Analysis, 2.1.5 with ρₖ = ρᵏ.
+  [[nodiscard]] double plots_as_one(double dt_s) const noexcept {
+    if (correlation_time_s == 0.0) return 1.0;
+    constexpr double kLeast = 1e-3;
+    const double correlation = std::exp(-std::max(dt_s / correlation_time_s, kLeast));
+    return (1.0 + correlation) / (1.0 - correlation);
   }
 
   /// A plot seen from own ship as a position with its covariance.

@@ -499,6 +499,11 @@ class ScanStages {
       weights[k] = weights_of(track, detection_of(track));
       readings_[k].list(candidates_of(track), weights[k], picture_.config.outlier_probability);
       if (readings_[k].empty()) continue;
+      const double plots = state().radar.plots_as_one(state().time_s - look_at(track).seen_s);
+      if (plots > 1.0) {
+        modes_.read(picture_.estimator_at(slots[k]));
+        readings_[k].count_as_one(plots, modes_);
+      }
       steps[count] = {&picture_.estimator_at(slots[k]), readings_[k].fixes(), weights[k].none,
                       readings_[k].share()};
       step_of[k] = &steps[count++];
@@ -549,6 +554,7 @@ class ScanStages {
     const double now_s = state().time_s;
     Look& look = look_at(track);
     look.misses = seen ? 0 : look.misses + 1;
+    if (seen) look.seen_s = now_s;
     if (seen || (!(now_s < track.seen_until_s) && &radar_that_counts(track) == &state()))
       track.count(seen, shared);
     if (seen) track.looked_s = std::max(track.looked_s, now_s);
@@ -602,7 +608,8 @@ class ScanStages {
       Track& track = picture_.tracks.at(slot);
       const RadarState& counts = radar_that_counts(track);
       if (confirm_or_coast(picture_.config, counts.radar,
-                           &counts == &state() ? shown_misses_at_hand : shown_misses(counts), track))
+                           &counts == &state() ? shown_misses_at_hand : shown_misses(counts),
+                           track))
         picture_.announce(TrackEvent::kCoasting, track);
       LossReason reason = reason_to_delete(picture_.config, counts.radar, track);
       if (reason == LossReason::kUncertain && picture_.scan_time_s < track.seen_until_s)
@@ -645,6 +652,7 @@ class ScanStages {
           Look& look = look_at(*track);
           look.passed_rad = look.look_rad = start.beam_rad;
           look.learned = start.learned;
+          look.seen_s = start.time_s;
         });
     picture_.tracks.close_gaps();
     const std::span<const int> slots = picture_.tracks.slots();
