@@ -21,7 +21,7 @@ def test_both_are_nowhere_worse_than_either_alone(report):
     assert len(runs) == 5
     for name in runs:
         both, *alone = (report.row(name, one) for one in ("both", "radar", "lidar"))
-        assert both["coverage"] >= 0.98 * max(one["coverage"] for one in alone)
+        assert both["coverage"] >= max(one["coverage"] for one in alone)
         assert both["velocity_to_radar"] <= 1.02
         assert both["velocity_to_lidar"] <= 0.8
 
@@ -31,7 +31,7 @@ def test_both_are_better_than_either_alone_in_the_mean(report):
     assert both["coverage"] > max(one["coverage"] for one in alone)
     assert both["velocity_to_radar"] < 0.99
     better = [name for name in runs_of(report) if report.row(name, "both")["velocity_to_radar"] < 1]
-    assert len(better) >= 3
+    assert len(better) >= 4
 
 
 @pytest.mark.parametrize("k", range(5))

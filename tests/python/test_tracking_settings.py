@@ -111,6 +111,7 @@ def test_radars_that_ship_are_complete_and_win_over_the_configuration(tmp_path):
         "max_range_m": 0.0,
         "blind_from_deg": 0.0,
         "blind_to_deg": 0.0,
+        "correlation_time_s": 0.0,
     }
     autoferry = read_settings(radar="autoferry").make_tracker().radar
     assert autoferry.bearing_std_rad == math.radians(1.5)

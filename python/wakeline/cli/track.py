@@ -71,7 +71,7 @@ columns, separated by commas, recognized by name in any order:
   --radar    keys of a TOML file: range_std_m, bearing_std_deg, extent_std_m,
              period_s, max_speed_mps, bearing_offset_deg, range_offset_m,
              time_offset_s (wakeline calibrate writes such a file), min_range_m, max_range_m,
-             blind_from_deg, blind_to_deg
+             blind_from_deg, blind_to_deg, correlation_time_s
 """
 
 

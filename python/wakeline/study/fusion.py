@@ -3,7 +3,9 @@
 - ``two_radars``: 40 vessels in the view of two radars of other errors, periods and places; by the
   ``fine`` one alone, the ``coarse`` one alone, and ``both``.
 - ``ais``: 40 vessels that report every 10 s, 1 to 20 s late; by the ``radar`` alone, ``both`` as
-  they come, and both with a window of late data, ``in_place``.
+  they come, and both with a window of late data, ``in_place``. ``radar_by_law`` and
+  ``both_by_law`` have every eighth vessel followed by an estimator that knows how vessels of the
+  scene move and which plots are theirs: none does better.
 - ``wrong_ais``: 60 vessels of which 40 report, six of them wrongly: 2 NM off, a position that
   stands, at 0/0, an identity that two use, one that moves to another vessel, and a drift.
 
@@ -28,6 +30,7 @@ from wakeline.scenario import RadarSimulator
 from wakeline.scenario.truth import Segment, Truth
 
 from .base import Done, Picture, Plan, Request, Rows, Study, means_of, radar_of
+from .known_law import Law, Particles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +45,7 @@ COARSE = RadarSimulator(25.0, np.deg2rad(1.2), 3.0, detection_probability=0.9, r
 COARSE_PLACE = (4000.0, -2000.0)
 AIS_STD_M = 5.0
 AIS_STD_MPS = 0.2
+LAW = Law(straight_s=(60.0, 200.0), turn_s=(10.0, 40.0), turn_deg_s=(0.5, 2.0))
 
 _RUNS_PER_SCENE = 20
 
@@ -155,10 +159,10 @@ def fleet(count: int, rng: np.random.Generator) -> list[Truth]:
         course, speed = rng.uniform(0, 2 * np.pi), rng.uniform(2.0, 10.0)
         segments = []
         while sum(segment.duration_s for segment in segments) < DURATION_S:
-            turn = np.deg2rad(rng.uniform(0.5, 2.0)) * rng.choice([-1, 1])
+            turn = LAW.turn_rates(rng)
             segments += [
-                Segment(rng.uniform(60.0, 200.0)),
-                Segment(rng.uniform(10.0, 40.0), turn_rate_rad_s=turn),
+                Segment(rng.uniform(*LAW.straight_s)),
+                Segment(rng.uniform(*LAW.turn_s), turn_rate_rad_s=turn),
             ]
         start = [place[0], speed * np.cos(course), place[1], speed * np.sin(course)]
         found.append(Truth(start, segments))
@@ -205,6 +209,9 @@ SCENES = {
     "wrong_ais": (_wrong_ais, {"radar": {0}, "both": {0, 2}}),
 }
 WINDOW_S = {"in_place": 20.0}
+BY_LAW = {"ais": {"radar_by_law": {0}, "both_by_law": {0, 2}}}
+PARTICLES = 5000
+EVERY = 8
 
 
 # Figures ------------------------------------------------------------------------------------------
@@ -235,7 +242,7 @@ def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, 
     """The figures of a tracker that is given some of the sensors, late data in a window."""
     tracker, number = _tracker(sensors, window_s)
     calls = sorted((call for call in scene.calls if call[1] in sensors), key=lambda call: call[0])
-    states = np.arange(SETTLED_S, DURATION_S - STEP_S, STEP_S)
+    states = _scored_times()
     sums = dict.fromkeys(("position", "velocity", "matched", "gospa", "right", "twice"), 0.0)
     longest_s, double_s = 0.0, np.zeros(len(scene.truths))
     for now_s, arrived in arrivals(calls, states):
@@ -274,13 +281,84 @@ def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, 
     }
 
 
+def _scored_times() -> np.ndarray:
+    return np.arange(SETTLED_S, DURATION_S - STEP_S, STEP_S)
+
+
+def follow_by_law(scene: Scene, sensors: set[int]) -> dict[str, float]:
+    """The errors of an estimator that knows `LAW` and which plots are of which vessel."""
+    rng = np.random.default_rng(len(scene.calls))
+    errors = np.concatenate(
+        [_errors_by_law(scene, k, sensors, rng) for k in range(0, len(scene.truths), EVERY)]
+    )
+    position, velocity = (np.mean(np.sum(errors[:, k::2] ** 2, axis=1)) for k in (0, 1))
+    return {"position_m": float(np.sqrt(position)), "velocity_mps": float(np.sqrt(velocity))}
+
+
+def _errors_by_law(
+    scene: Scene, vessel: int, sensors: set[int], rng: np.random.Generator
+) -> np.ndarray:
+    truth = scene.truths[vessel]
+    events: list[tuple[float, str, Any]] = [(time_s, "score", None) for time_s in _scored_times()]
+    for number, (arrival_s, sensor, values) in enumerate(scene.calls):
+        if sensor not in sensors:
+            continue
+        if sensor == 0:
+            events += [(plot[0], "plot", plot[1:]) for plot in _plots_of(truth, values)]
+        elif values["identity"] == scene.identity[vessel]:
+            events += [(values["time_s"], "made", number), (arrival_s, "report", number)]
+    events.sort(key=lambda event: event[0])
+    begin_s = next(time_s for time_s, kind, _ in events if kind == "plot")
+    particles = Particles(LAW, PARTICLES, truth.state_at(begin_s)[0], begin_s, rng)
+    made, errors = set(), []
+    for time_s, kind, what in events:
+        if time_s < begin_s:
+            continue
+        particles.move_to(time_s)
+        if kind == "plot":
+            particles.weigh(_plot_squares(particles.states, *what))
+        elif kind == "made":
+            particles.remember(what)
+            made.add(what)
+        elif kind == "report" and what in made:
+            particles.weigh(_report_squares(particles.recall(what), scene.calls[what][2]))
+        elif kind == "score":
+            errors.append(particles.mean - truth.state_at(time_s)[0])
+    return np.array(errors)
+
+
+def _plots_of(truth: Truth, sector: dict[str, Any]) -> Iterator[tuple[float, float, float]]:
+    """Times, ranges and bearings of the plots of a sector that are a vessel's."""
+    plots = zip(sector["plot_time_s"], sector["range_m"], sector["bearing_rad"], strict=True)
+    for time_s, range_m, bearing_rad in plots:
+        if _plot_squares(truth.state_at(time_s)[0][:, None], range_m, bearing_rad)[0] < 20.0:
+            yield time_s, range_m, bearing_rad
+
+
+def _plot_squares(states: np.ndarray, range_m: float, bearing_rad: float) -> np.ndarray:
+    far_m = range_m - np.hypot(states[0], states[2])
+    aside_rad = bearing_rad - np.arctan2(states[2], states[0])
+    aside_rad = (aside_rad + np.pi) % (2 * np.pi) - np.pi
+    return (far_m / FINE.range_std_m) ** 2 + (aside_rad / FINE.bearing_std_rad) ** 2
+
+
+def _report_squares(states: np.ndarray, report: dict[str, Any]) -> np.ndarray:
+    names = ("north_m", "vnorth_mps", "east_m", "veast_mps")
+    errors = states - np.array([report[name] for name in names])[:, None]
+    errors[::2] /= report["position_std_m"]
+    errors[1::2] /= report["velocity_std_mps"]
+    return np.sum(errors**2, axis=0)
+
+
 def _run(name: str, seed: int) -> dict[str, dict[str, float]]:
     make, estimators = SCENES[name]
     scene = make(np.random.default_rng([seed, *map(ord, name)]))
-    return {
+    figures = {
         estimator: follow(scene, sensors, WINDOW_S.get(estimator, 0.0))
         for estimator, sensors in estimators.items()
     }
+    by_law = BY_LAW.get(name, {}).items()
+    return figures | {estimator: follow_by_law(scene, sensors) for estimator, sensors in by_law}
 
 
 def _plan(request: Request) -> Plan:
@@ -297,11 +375,12 @@ def _rows(done: Done) -> Rows:
     rows = []
     for name, (_, estimators) in SCENES.items():
         runs = [run for (of, _), run in done.items() if of == name]
-        for estimator in estimators if runs else ():
+        for estimator in [*estimators, *BY_LAW.get(name, ())] if runs else ():
             figures = [run[estimator] for run in runs]
-            double_s = float(max(one["double_s"] for one in figures))
             row = {"scenario": name, "estimator": estimator, **means_of(figures)}
-            rows.append(row | {"double_s": double_s})
+            if estimator in estimators:
+                row["double_s"] = float(max(one["double_s"] for one in figures))
+            rows.append(row)
     return rows
 
 

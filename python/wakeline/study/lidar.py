@@ -1,10 +1,10 @@
 """A lidar beside a radar: the bundled recording "autoferry", five runs with two boats.
 
 The lidar looks every 0.5 s, sees boats up to about 150 m and is to the tracker a second radar. Its
-points wander along a hull for seconds, so that ten looks are worth one: ``LIDAR`` has the extent
-that such errors have as independent ones. Estimators are the ``radar`` alone, the ``lidar`` alone
-and ``both``; ``lidar_late`` and ``radar_late`` have the data of one sensor 1.7 s late, in a window
-of late data. Tracks are scored at the scans of the radar.
+points wander along a hull for seconds, so that a dozen looks are worth one: ``LIDAR`` has their
+spread in a look as extent, and the time for which they are correlated. Estimators are the ``radar``
+alone, the ``lidar`` alone and ``both``; ``lidar_late`` and ``radar_late`` have the data of one
+sensor 1.7 s late, in a window of late data. Tracks are scored at the scans of the radar.
 """
 
 from __future__ import annotations
@@ -30,11 +30,13 @@ RADAR = read_settings(radar="autoferry").make_radar()
 LIDAR = wl.Radar(
     range_std_m=2.0,
     bearing_std_rad=np.deg2rad(0.5),
-    extent_std_m=10.0,
+    extent_std_m=2.0,
+    correlation_time_s=3.0,
     period_s=0.5,
     max_speed_mps=RADAR.max_speed_mps,
     max_range_m=150.0,
 )
+CONFIG = wl.TrackerConfig(vessel_length_m=20.0)
 GATE_M = 20.0
 LATE_S = 1.7
 SENSORS = {"radar": RADAR, "lidar": LIDAR}
@@ -50,7 +52,8 @@ ESTIMATORS = {
 def tracker_of(late_s: dict[str, float]) -> wl.Tracker:
     """A tracker with the sensors that are given by how late their data come."""
     radars = [SENSORS[name] for name in late_s]
-    return wl.LateWindow(radars) if any(late_s.values()) else wl.Tracker(radars)
+    kind = wl.LateWindow if any(late_s.values()) else wl.Tracker
+    return kind(radars, config=CONFIG)
 
 
 def follow(

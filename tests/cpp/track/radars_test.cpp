@@ -212,6 +212,66 @@ TEST(Radars, ARadarThatDoesNotCoverATrackLeavesItAlone) {
   }
 }
 
+TEST(Radars, AHiddenTargetIsShownForAsLongAsTheSlowestRadarAloneShowsIt) {
+  Radar fast = kFine;
+  fast.period_s = 0.5;
+  const std::vector<Boat> boats = fleet(8, 9);
+  const Station slow{0, kFine}, quick{1, fast};
+  const auto shown = [](const VesselTracker& tracker) {
+    const std::vector<const Track*> tracks = tracks_of(tracker, true);
+    return std::count_if(tracks.begin(), tracks.end(),
+                         [](const Track* track) { return track->shown(); });
+  };
+  VesselTracker both = tracker_of({kFine, fast});
+  watch(both, {slow, quick}, boats, 0.0, 60.0, 9, nothing);
+  watch(both, {slow, quick}, {}, 60.0, 60.0 + 2 * kFine.period_s, 9, nothing);
+  EXPECT_EQ(shown(both), std::ssize(boats)) << "two misses of the slow one, ten of the fast one";
+  watch(both, {slow, quick}, {}, 60.0 + 2 * kFine.period_s, 60.0 + 6 * kFine.period_s, 9, nothing);
+  EXPECT_EQ(shown(both), 0);
+}
+
+TEST(Radars, PlotsOfCorrelatedErrorsCountForAsManyAsTheyAreWorth) {
+  Radar correlated = kFine;
+  correlated.correlation_time_s = 5.0;
+  EXPECT_EQ(kFine.plots_as_one(0.1), 1.0);
+  EXPECT_NEAR(correlated.plots_as_one(0.5), 2 * 5.0 / 0.5, 0.1) << "2 tau / dt when dense";
+  EXPECT_NEAR(correlated.plots_as_one(50.0), 1.0, 1e-3);
+
+  // Echoes that wander along the hull, seen twice a second.
+  Radar lidar{.range_std_m = 1.0,
+              .bearing_std_rad = deg(0.1),
+              .extent_std_m = 4.0,
+              .period_s = 0.5,
+              .max_speed_mps = 20.0};
+  const std::vector<Boat> boats = fleet(8, 11);
+  const auto velocity_error_mps = [&](const Radar& radar) {
+    VesselTracker tracker = tracker_of({radar});
+    Draw draw(12);
+    std::vector<Vec<double, 2>> off_m(boats.size(), Vec<double, 2>::Zero());
+    const double stays = std::exp(-radar.period_s / 5.0);
+    double sum = 0.0, count = 0.0;
+    for (double time_s = 0.0; time_s < 120.0; time_s += radar.period_s) {
+      std::vector<Plot> plots;
+      for (std::size_t k = 0; k < boats.size(); ++k) {
+        off_m[k] = stays * off_m[k] + 4.0 * std::sqrt(1.0 - stays * stays) * draw.normals<2>();
+        plots.push_back(exact_plot(boats[k].at(time_s) + off_m[k], time_s));
+      }
+      EXPECT_EQ(tracker.process(time_s, plots).status, Status::kOk);
+      if (time_s < 30.0) continue;
+      for (const Boat& boat : boats)
+        if (const Track* track = track_at(tracker, boat.at(time_s))) {
+          sum += (track->velocity() - boat.velocity_mps).squaredNorm();
+          count += 1.0;
+        }
+    }
+    EXPECT_GT(count, 0.95 * 180.0 * static_cast<double>(boats.size()));
+    return std::sqrt(sum / count);
+  };
+  const double as_independent_mps = velocity_error_mps(lidar);
+  lidar.correlation_time_s = 5.0;
+  EXPECT_LT(velocity_error_mps(lidar), 0.7 * as_independent_mps);
+}
+
 TEST(Radars, HandOverFromOneCoverageToAnotherKeepsTheNumber) {
   Radar west = kFine, east = kCoarse;
   west.max_range_m = east.max_range_m = 3000.0;

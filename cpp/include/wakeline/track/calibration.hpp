@@ -277,6 +277,7 @@ class Calibration {
   using Offsets = Vec<double, kOffsets>;
   using Covariance = Mat<double, kOffsets, kOffsets>;
   using Pair = Vec<double, 2>;  // range, bearing; or along, across
+  using Lever = Mat<double, kOffsets, 2>;
 
   static constexpr int kRangeBins = 40, kBearingBins = 32;
   static constexpr double kGate = 11.0;           // d² at which a plot is as likely another's
@@ -362,7 +363,7 @@ class Calibration {
   /// Normal equations of a vessel.
   struct Normal {
     Covariance radar = Covariance::Zero();
-    Mat<double, kOffsets, 2> both = Mat<double, kOffsets, 2>::Zero();
+    Lever both = Lever::Zero();
     Mat<double, 2, 2> vessel = Mat<double, 2, 2>::Zero();
     Offsets radar_side = Offsets::Zero();
     Pair vessel_side = Pair::Zero();
@@ -382,6 +383,7 @@ class Calibration {
     Covariance covariance = Covariance::Zero();
     std::vector<Candidate> candidates;
     std::vector<Pair> vessel_m;   // offset of each vessel
+    std::vector<Lever> lever;     // how much of what a vessel shows is taken for its offset
     std::vector<double> matches;  // plots of each vessel
     std::vector<double> weight;   // of each candidate
     Pair scale = Pair::Ones();    // variance found over expected
@@ -389,6 +391,11 @@ class Calibration {
     double vessel_variance_m2 = 0.0;
     double total = 0.0;
     bool solved = false;
+
+    /// Of the residuals of range and bearing of a candidate in the normal equations.
+    [[nodiscard]] Pair weights_of(std::size_t k) const noexcept {
+      return weight[k] / correlation * candidates[k].variance.cwiseProduct(scale).cwiseInverse();
+    }
   };
 
   void wait(const Plot& plot) noexcept {
@@ -407,6 +414,7 @@ class Calibration {
   void balance(Solution& s) const;
   void spread(Solution& s) const;
   [[nodiscard]] double by_chance(const Solution& s) const noexcept;
+  void inflate(Solution& s) const;
   void widen(Solution& s) const;
   [[nodiscard]] Solution solution() const;
 
@@ -544,8 +552,7 @@ inline void Calibration::balance(Solution& s) const {
     if (s.weight[k] < 1e-6) continue;
     const Candidate& c = s.candidates[k];
     Normal& n = normal[static_cast<std::size_t>(c.vessel)];
-    const Pair weight =
-        s.weight[k] / s.correlation * c.variance.cwiseProduct(s.scale).cwiseInverse();
+    const Pair weight = s.weights_of(k);
     n.add(c.row(0), c.sight, c.residual[0], weight[0]);
     n.add(c.row(1), c.cross(), c.residual[1], weight[1]);
   }
@@ -555,11 +562,13 @@ inline void Calibration::balance(Solution& s) const {
   Offsets side = Offsets::Zero();
   const Mat<double, 2, 2> prior = Mat<double, 2, 2>::Identity() / s.vessel_variance_m2;
   std::vector<Mat<double, 2, 2>> own(normal.size());
+  s.lever.resize(normal.size());
   for (std::size_t v = 0; v < normal.size(); ++v) {
     own[v] = Cholesky<2>(normal[v].vessel + prior)
                  .solve(Mat<double, 2, 2>(Mat<double, 2, 2>::Identity()));
-    information += normal[v].radar - normal[v].both * own[v] * normal[v].both.transpose();
-    side += normal[v].radar_side - normal[v].both * own[v] * normal[v].vessel_side;
+    s.lever[v] = normal[v].both * own[v];
+    information += normal[v].radar - s.lever[v] * normal[v].both.transpose();
+    side += normal[v].radar_side - s.lever[v] * normal[v].vessel_side;
   }
   const Offsets size = information.diagonal().cwiseSqrt();  // metres, radians, seconds
   const Covariance even =
@@ -573,10 +582,9 @@ inline void Calibration::balance(Solution& s) const {
   for (std::size_t v = 0; v < normal.size(); ++v) {
     s.vessel_m[v] = own[v] * (normal[v].vessel_side - normal[v].both.transpose() * s.offsets);
     if (s.matches[v] < kFewestOfVessel) continue;
-    const Mat<double, 2, kOffsets> lever = own[v] * normal[v].both.transpose();
     vessels += 1.0;
     squares += s.vessel_m[v].squaredNorm() + own[v].trace() +
-               (lever * s.covariance * lever.transpose()).trace();
+               (s.lever[v].transpose() * s.covariance * s.lever[v]).trace();
   }
   const double expected = config_.position_offset_std_m * config_.position_offset_std_m;
   s.vessel_variance_m2 = (kPriorDegrees * expected + squares) / (kPriorDegrees + 2.0 * vessels);
@@ -627,6 +635,54 @@ inline double Calibration::by_chance(const Solution& s) const noexcept {
   return share;
 }
 
+/// Enlarges the standard deviations where residuals last for longer than their mean correlation
+/// says, as the errors of another radar's smoothed tracks do: they show in some combinations of the
+/// offsets more than in others. The covariance of the offsets is A⁻¹ M A⁻¹, where
+///
+///     M = n / (n - p) Σ g gᵀ,   g = Σ w e (a - L u)
+///
+/// g is the score of the plots of a minute of one vessel: e are their residuals of weight w, a the
+/// derivatives by the offsets and u by the offset of the vessel, of which L is eliminated. n such
+/// sums determine p unknowns. A⁻¹ has taken B = Σ w (a - L u) (a - L u)ᵀ for M. Source: P. Huber,
+/// Proc. Fifth Berkeley Symposium, 1967; with groups K.-Y. Liang, S. Zeger, Biometrika 73, 1986.
+inline void Calibration::inflate(Solution& s) const {
+  constexpr double kGroup_s = 60.0;
+  Covariance scores = Covariance::Zero(), taken = Covariance::Zero();
+  std::vector<Offsets> score(vessels_.size(), Offsets::Zero());
+  std::vector<double> group(vessels_.size(), 0.0);
+  double sums = 0.0, unknowns = kOffsets;
+  const auto close = [&](std::size_t v) {
+    if (score[v].isZero(0.0)) return;
+    scores.noalias() += score[v] * score[v].transpose();
+    score[v].setZero();
+    sums += 2.0;  // range and bearing
+  };
+  for (std::size_t k = 0; k < s.candidates.size(); ++k) {
+    const Candidate& c = s.candidates[k];
+    const auto v = static_cast<std::size_t>(c.vessel);
+    if (s.weight[k] < 1e-6 || s.matches[v] < kFewestOfVessel) continue;
+    if (const double now = std::floor(c.time_s / kGroup_s); now != group[v]) {
+      close(v);
+      group[v] = now;
+    }
+    const Pair rest = c.rest(s.offsets, s.vessel_m[v]), weight = s.weights_of(k);
+    const Offsets by_range = c.row(0) - s.lever[v] * c.sight;
+    const Offsets by_bearing = c.row(1) - s.lever[v] * c.cross();
+    score[v] += weight[0] * rest[0] * by_range + weight[1] * rest[1] * by_bearing;
+    taken.noalias() += weight[0] * by_range * by_range.transpose() +
+                       weight[1] * by_bearing * by_bearing.transpose();
+  }
+  for (std::size_t v = 0; v < vessels_.size(); ++v) {
+    close(v);
+    unknowns += s.matches[v] >= kFewestOfVessel ? 2.0 : 0.0;
+  }
+  scores *= sums / std::max(sums - unknowns, 1.0);
+  const Covariance excess = s.covariance * (scores - taken) * s.covariance;
+  const Offsets factor =
+      (1.0 + excess.diagonal().cwiseQuotient(s.covariance.diagonal()).cwiseMax(0.0).array()).sqrt();
+  s.covariance = factor.asDiagonal() * s.covariance * factor.asDiagonal();
+}
+
 /// Adds what never averages out: an echo is on the near side of a hull, and on one end more than on
 /// the other; of few vessels no spread shows how far.
 inline void Calibration::widen(Solution& s) const {
@@ -668,10 +724,12 @@ inline Calibration::Solution Calibration::solution() const {
     if (width < 1e-4 && change.cwiseAbs2().cwiseQuotient(s.covariance.diagonal()).sum() < 1e-8)
       break;
   }
-  if (s.solved)
+  if (s.solved) {
+    inflate(s);
     widen(s);
-  else
+  } else {
     s.offsets.setZero();
+  }
   return s;
 }
 
