@@ -1,8 +1,10 @@
 """Several sensors in one picture: the laws of the study ``fusion``, a run of each scene."""
 
+import numpy as np
 import pytest
 
 from wakeline.study import fusion
+from wakeline.study.known_law import Law, Particles
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +27,26 @@ def test_reports_make_positions_better_and_name_the_vessels(report):
     assert both["position_m"] <= 0.8 * radar["position_m"]
     assert both["velocity_mps"] <= radar["velocity_mps"]
     assert both["identity_right"] >= 0.99
+
+
+def test_what_knows_the_law_of_motion_is_better_than_what_does_not(report):
+    for by_law, tracker in (("radar_by_law", "radar"), ("both_by_law", "in_place")):
+        knows, learns = (report.row("ais", name) for name in (by_law, tracker))
+        assert 0.0 < knows["velocity_mps"] < learns["velocity_mps"]
+        assert 0.0 < knows["position_m"] < learns["position_m"]
+
+
+def test_late_measurements_weigh_particles_by_where_they_were():
+    law = Law(straight_s=(100.0, 100.0), turn_s=(10.0, 20.0), turn_deg_s=(1.0, 2.0))
+    rng = np.random.default_rng(3)
+    particles = Particles(law, 4000, np.array([0.0, 5.0, 0.0, 0.0]), 0.0, rng)
+    particles.move_to(10.0)
+    particles.remember("fix")
+    particles.move_to(30.0)
+    particles.weigh((particles.recall("fix")[0] - 60.0) ** 2)
+    # 10 m ahead after 10 s, half of it by the start and half by a speed that has lasted since.
+    assert particles.mean[1] == pytest.approx(5.5, abs=0.2)
+    assert particles.mean[0] == pytest.approx(60.0 + 20.0 * particles.mean[1], abs=1.0)
 
 
 def test_reports_that_lie_do_no_harm(report):
