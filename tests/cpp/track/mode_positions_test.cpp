@@ -34,7 +34,7 @@ TEST(ModePositions, AreTheMixtureOfTheModes) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   const double threshold = 6.0;
-  int inside = 0;
+  int inside = 0, excluded = 0;
   for (int trial = 0; trial < 200; ++trial) {
     VesselImm imm = vessel_imm(Radar{});
     Gaussian<4> start{{100.0, 8.0 * normal(random), -50.0, 8.0 * normal(random)},
@@ -59,11 +59,15 @@ TEST(ModePositions, AreTheMixtureOfTheModes) {
       if (gated) {
         EXPECT_LE((z - position).cwiseAbs().maxCoeff(), modes.reach_m(position, 400.0, threshold));
       }
+      const bool is_excluded = modes.along(z - position, position).excludes(z, r, threshold);
+      EXPECT_FALSE(gated && is_excluded);
+      excluded += is_excluded;
       inside += gated;
     }
   }
   EXPECT_GT(inside, 400);
   EXPECT_LT(inside, 3600);
+  EXPECT_GT(excluded, 100);
 }
 
 TEST(ModePositions, NothingThatIsNotFiniteIsInside) {
@@ -96,6 +100,7 @@ TEST(ModePositions, AskAnEstimatorThatDoesNotShowItsModes) {
   EXPECT_TRUE(modes.gate({5.0, 0.0}, r, 6.0));
   EXPECT_FALSE(modes.gate({6.1, 0.0}, r, 6.0));
   EXPECT_EQ(modes.reach_m({0.0, 0.0}, 1.0, 6.0), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(modes.along({1.0, 0.0}, {0.0, 0.0}).excludes({1e6, 0.0}, r, 6.0));
 }
 
 }  // namespace

@@ -112,12 +112,14 @@ class Duplicates {
     for (const int slot : tracks.slots()) {
       const Track& track = tracks.at(slot);
       ends_[static_cast<std::size_t>(slot)] = 0;
-      const Vec<double, 2> position = track.position();
+      const Vec<double, 2> position = track.position(), velocity = track.velocity();
       const double way_m =
-          track.velocity().cwiseAbs().maxCoeff() *
+          std::max(std::abs(velocity[0]), std::abs(velocity[1])) *
           std::min(std::max(end_s - track.time_s, track.time_s - begin_s), longest_s_);
       const double apart_m =
-          (south_west - position).cwiseMax(position - north_east).maxCoeff() - way_m;
+          std::max(std::max(south_west[0] - position[0], position[0] - north_east[0]),
+                   std::max(south_west[1] - position[1], position[1] - north_east[1])) -
+          way_m;
       const double variance_m2 = widest_m2(track);
       if (!is_finite(position) ||
           (apart_m > 0.0 && apart_m * apart_m > reach_m2(widest + variance_m2)))
@@ -152,6 +154,10 @@ class Duplicates {
         return;
       const double dt_s = track.time_s - other.time_s;
       if (std::abs(dt_s) > longest_s_) return;
+      const Gaussian<2> there = position_at_constant_velocity(other.kinematics, dt_s);
+      if ((there.mean - track.position()).cwiseAbs2().maxCoeff() >
+          reach_m2(there.covariance.diagonal().maxCoeff() + widest_m2(track)))
+        return;
       const Gaussian<4> then =
           dt_s == 0.0 ? other.kinematics : at_constant_velocity(other.kinematics, dt_s);
       found = same_target(then, track.kinematics, distance_) ||

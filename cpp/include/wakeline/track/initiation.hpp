@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -147,13 +148,22 @@ class TrackInitiation {
                 bool whole_turn, const HasRoom& has_room, const Start& start) {
     const double longest_s = std::max(config_.coast_scans_max, kLeastScans) * radar.period_s;
     if (begin_rad_ == kNever) begin_rad_ = whole_turn ? beam_rad - Beam::kTurn : beam_rad;
+    // Plots are of few turns: the density of the last two is kept.
+    std::array<FirstSeen, 2> known{};
+    const auto first_seen = [&](const FreePlot& plot) {
+      const double turns = turns_until(plot.beam_rad);
+      if (turns != known[0].turns) std::swap(known[0], known[1]);
+      if (turns != known[0].turns)
+        known[0] = {turns, first_seen_per_m2(radar, turns, detection_probability)};
+      return known[0].per_m2;
+    };
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       if (plots[k].waits || !(ownership.free_probability()[at] > config_.free_plot)) continue;
       if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
         const LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
-        const double probability = existence(radar, earlier, plots[k],
+        const double probability = existence(radar, earlier, plots[k], first_seen(earlier),
                                              clutter.without(own, plots, k), detection_probability);
         if (!has_room(probability)) return;
         start(TrackStart{belief(radar, earlier, plots[k]), plots[k].time_s, plots[k].beam_rad,
@@ -201,7 +211,7 @@ class TrackInitiation {
   /// first, with the density β of targets first seen; of PD N(z₂; z₁) / ρ for the second, with the
   /// prior of the velocity; and 1 - PD for each scan between.
   [[nodiscard]] double existence(const Radar& radar, const FreePlot& earlier, const ScanPlot& later,
-                                 double clutter_per_m2,
+                                 double first_seen_per_m2, double clutter_per_m2,
                                  double detection_probability) const noexcept {
     const double dt_s = later.time_s - earlier.time_s;
     const Cholesky<2> factor(earlier.position.covariance + later.position.covariance +
@@ -212,20 +222,31 @@ class TrackInitiation {
         std::exp(-0.5 * (factor.squared_norm(way) + factor.log_determinant())) /
         (2.0 * std::numbers::pi);
     const double missed = std::max(std::round(dt_s / radar.period_s) - 1.0, 0.0);
-    const double odds = first_seen_per_m2(radar, earlier.beam_rad, detection_probability) /
-                        clutter_per_m2 * detection_probability * likelihood / clutter_per_m2 *
-                        std::pow(1.0 - detection_probability, missed);
+    const double miss = 1.0 - detection_probability;
+    const double all_missed = missed == 0.0 ? 1.0 : missed == 1.0 ? miss : std::pow(miss, missed);
+    const double odds = first_seen_per_m2 / clutter_per_m2 * detection_probability * likelihood /
+                        clutter_per_m2 * all_missed;
     return std::min(odds / (1.0 + odds), kMostExistence);
   }
 
-  /// Targets per area whose first plot is one that the beam gives at that angle: β in the long run,
-  /// PD of all that are there in the first turn, and of those that it has missed in the next ones.
-  /// As many are there as appear in the mean time until one leaves.
-  [[nodiscard]] double first_seen_per_m2(const Radar& radar, double beam_rad,
+  /// Targets per area that are first seen in the turn after so many.
+  struct FirstSeen {
+    double turns = -1.0;
+    double per_m2 = 0.0;
+  };
+
+  /// Turns of the antenna before the one in which the beam had that angle.
+  [[nodiscard]] double turns_until(double beam_rad) const noexcept {
+    return std::max(std::floor((beam_rad - begin_rad_) / Beam::kTurn), 0.0);
+  }
+
+  /// Targets per area whose first plot is one of the turn after so many: β in the long run, PD of
+  /// all that are there in the first turn, and of those that it has missed in the next ones. As
+  /// many are there as appear in the mean time until one leaves.
+  [[nodiscard]] double first_seen_per_m2(const Radar& radar, double turns,
                                          double detection_probability) const noexcept {
     const double born = config_.birth_density_per_m2;
     const double there = born * config_.survival_time_s / radar.period_s;
-    const double turns = std::max(std::floor((beam_rad - begin_rad_) / Beam::kTurn), 0.0);
     const double missed = std::pow(1.0 - detection_probability, turns);
     return born + missed * std::max(detection_probability * there - born, 0.0);
   }

@@ -27,6 +27,26 @@ concept HasModePositions = requires(const Estimator& estimator) {
   { estimator.evidence(Fix{}, Vec<double, 2>{}) } -> std::same_as<Evidence<double>>;
 };
 
+/// Predictions of a position in one direction w, by which most fixes outside of their gate are
+/// found at less expense: with S = P + R, |w·ν|² > γ wᵀ S w means that νᵀ S⁻¹ ν > γ.
+struct GateStrip {
+  Vec<double, 2> direction;  ///< w, of any length
+  Vec<double, 2> position;
+  double from;      ///< the least of w · (mean - position)
+  double to;        ///< and the greatest
+  double variance;  ///< the greatest wᵀ P w
+
+  /// Whether a fix with covariance `r` is outside of the gate of that threshold about each.
+  [[nodiscard]] bool excludes(const Vec<double, 2>& z, const Mat<double, 2, 2>& r,
+                              double threshold) const noexcept {
+    constexpr double kRounding = 1.0 + 1e-6;
+    const double along = direction.dot(z - position);
+    const double outside = std::max(along - to, from - along);
+    return outside > 0.0 &&
+           outside * outside > kRounding * threshold * (variance + direction.dot(r * direction));
+  }
+};
+
 /// An estimator's prediction of its target's position, as a mixture over its modes: what gates and
 /// likelihoods of position fixes ask for.
 ///
@@ -82,6 +102,27 @@ class ModePositions {
       reach_m = max(reach_m, off_m + sqrt(threshold * (widest_m2 + variance_m2)));
     }
     return kRounding * greatest_of_lanes(reach_m);
+  }
+
+  /// All modes in one direction from a position, about which they are; infinitely wide where modes
+  /// are not shown.
+  [[nodiscard]] GateStrip along(const Vec<double, 2>& direction,
+                                const Vec<double, 2>& position) const noexcept {
+    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+    if (evidence_ != nullptr) return {direction, position, -kAnywhere, kAnywhere, kAnywhere};
+    Lanes back = -kAnywhere, ahead = -kAnywhere, variance = 0.0;
+    for (std::size_t k = 0; k < count_; k += kLanes) {
+      const Gaussian<2, Lanes> modes = row(k);
+      const Lanes mean = direction[0] * (modes.mean[0] - position[0]) +
+                         direction[1] * (modes.mean[1] - position[1]);
+      back = max(back, -mean);
+      ahead = max(ahead, mean);
+      variance = max(variance, direction[0] * direction[0] * modes.covariance(0, 0) +
+                                   2.0 * direction[0] * direction[1] * modes.covariance(1, 0) +
+                                   direction[1] * direction[1] * modes.covariance(1, 1));
+    }
+    return {direction, position, -greatest_of_lanes(back), greatest_of_lanes(ahead),
+            greatest_of_lanes(variance)};
   }
 
   /// Whether a fix with covariance `r` is within a gate of that threshold about one of the modes.

@@ -42,6 +42,10 @@ class PlaneIndex {
     std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
       return a.north < b.north || (a.north == b.north && a.name < b.name);
     });
+    north_m_ = west_m_ = east_m_ = 0.0;
+    if (points_.empty()) return;
+    north_m_ = points_.back().north;
+    west_m_ = kNowhere, east_m_ = -kNowhere;
     const auto size = static_cast<std::ptrdiff_t>(points_.size());
     per_strip_ = std::max<std::ptrdiff_t>(
         1, static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size)))));
@@ -52,6 +56,8 @@ class PlaneIndex {
                 [](const Point& a, const Point& b) {
                   return a.east < b.east || (a.east == b.east && a.name < b.name);
                 });
+      west_m_ = std::min(west_m_, begin->east);
+      east_m_ = std::max(east_m_, points_[at(std::min(first + per_strip_, size) - 1)].east);
     }
   }
 
@@ -85,6 +91,9 @@ class PlaneIndex {
     const double south = position[0] - reach_m;
     const double north = position[0] + reach_m;
     const std::ptrdiff_t strips = std::ssize(south_m_);
+    if (strips == 0 || south_m_.front() > north || north_m_ < south ||
+        west_m_ - position[1] > reach_m || position[1] - east_m_ > reach_m)
+      return;
     std::ptrdiff_t up =
         first_not_below(south_m_.begin(), strips, position[0], [](double m) { return m; }) -
         south_m_.begin();
@@ -149,6 +158,7 @@ class PlaneIndex {
   std::vector<Point> points_;    ///< strip by strip, each from west to east
   std::vector<double> south_m_;  ///< southernmost point of each strip
   std::ptrdiff_t per_strip_ = 1;
+  double north_m_ = 0.0, west_m_ = 0.0, east_m_ = 0.0;  ///< of the outermost points
 };
 
 }  // namespace wakeline

@@ -132,6 +132,12 @@ class ScanPlots {
   [[nodiscard]] auto begin() const noexcept { return plots_.begin(); }
   [[nodiscard]] auto end() const noexcept { return plots_.end(); }
 
+  /// Where the antenna was at the last plot.
+  [[nodiscard]] Vec<double, 2> antenna() const noexcept {
+    if (plots_.empty()) return Vec<double, 2>::Zero();
+    return {plots_.back().errors.antenna_north_m, plots_.back().errors.antenna_east_m};
+  }
+
   /// Time of the scan.
   [[nodiscard]] double scan_s() const noexcept { return scan_s_; }
   /// No plot is farther from that time.

@@ -285,9 +285,34 @@ class ScanStages {
   /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
   template <class Function>
   void for_each_near(const Track& track, const Function& function) const noexcept {
-    for_each_in_reach(track, [&](int plot) {
-      if (is_near(track, plot)) function(plot);
-    });
+    const ScanPlots& plots = state().plots;
+    const double late_s = plots.greatest_lag_s(state().time_s);
+    const auto position_before = [&](double before_s) {
+      return position_at_constant_velocity(track.kinematics,
+                                           state().time_s - before_s - track.time_s);
+    };
+    const Gaussian<2> now = position_before(0.0);
+    const Vec<double, 2> sight = now.mean - plots.antenna();
+    // Variances are largest at one end of the times of the plots.
+    double own_m2 = now.covariance.trace();
+    double along_m4 = sight.dot(now.covariance * sight);
+    if (late_s > 0.0) {
+      const Mat<double, 2, 2> before_m2 = position_before(late_s).covariance;
+      own_m2 = std::max(own_m2, before_m2.trace());
+      along_m4 = std::max(along_m4, sight.dot(before_m2 * sight));
+    }
+    const double way_m = late_s * track.velocity().cwiseAbs().maxCoeff();
+    const double way_m2 = late_s * std::abs(sight.dot(track.velocity()));
+    const double threshold = picture_.gate.threshold();
+    const GateStrip strip{sight, now.mean, -way_m2, way_m2, along_m4};
+    plots.for_each_near(
+        now.mean, [&](double plot_m2) { return std::sqrt(threshold * (own_m2 + plot_m2)) + way_m; },
+        [&](int plot) {
+          const Gaussian<2>& position = plots[plot].position;
+          if (!strip.excludes(position.mean, position.covariance, threshold) &&
+              is_near(track, plot))
+            function(plot);
+        });
   }
 
   /// Whether a plot is in the gate of a track without outliers.

@@ -52,12 +52,16 @@ class TrackGate {
       const double generous_m = own_m + std::sqrt(threshold_ * outlier_m2);
       return std::min(generous_m, modes.reach_m(track.position(), outlier_m2, threshold_)) + way_m;
     };
+    // In range plots are precise, so that most others are outside of the gate in this direction.
+    const GateStrip strip = modes.along(track.position() - plots.antenna(), track.position());
     plots.for_each_near(track.position(), reach_m, [&](int index) {
       const ScanPlot& plot = plots[index];
       const Mat<double, 2, 2> added_m2 = alignment.added_m2(plot);
       const Mat<double, 2, 2> generous_r =
           kElsewhere * outlier_variance_ * plot.position.covariance + added_m2;
-      if (!modes.gate(alignment.moved(plot), generous_r, threshold_)) return;
+      const Vec<double, 2> moved_m = alignment.moved(plot);
+      if (strip.excludes(moved_m, generous_r, threshold_)) return;
+      if (!modes.gate(moved_m, generous_r, threshold_)) return;
       const Gaussian<2> there = alignment.at_prediction(plot);
       const ValidatedPlot moved{index, there.mean, there.covariance + added_m2,
                                 outlier_variance_ * there.covariance + added_m2};
