@@ -643,10 +643,11 @@ inline double Calibration::by_chance(const Solution& s) const noexcept {
 ///
 /// g is the score of the plots of a minute of one vessel: e are their residuals of weight w, a the
 /// derivatives by the offsets and u by the offset of the vessel, of which L is eliminated. n such
-/// sums determine p unknowns. A⁻¹ has taken B = Σ w (a - L u) (a - L u)ᵀ for M. Source: P. Huber,
-/// Proc. Fifth Berkeley Symposium, 1967; with groups K.-Y. Liang, S. Zeger, Biometrika 73, 1986.
+/// sums determine p unknowns; fewer than 4 p say too little. A⁻¹ has taken B = Σ w (a - L u) (a - L
+/// u)ᵀ for M. Source: P. Huber, Proc. Fifth Berkeley Symposium, 1967; with groups K.-Y. Liang, S.
+/// Zeger, Biometrika 73, 1986.
 inline void Calibration::inflate(Solution& s) const {
-  constexpr double kGroup_s = 60.0;
+  constexpr double kGroup_s = 60.0, kSumsPerUnknown = 4.0;
   Covariance scores = Covariance::Zero(), taken = Covariance::Zero();
   std::vector<Offsets> score(vessels_.size(), Offsets::Zero());
   std::vector<double> group(vessels_.size(), 0.0);
@@ -676,7 +677,8 @@ inline void Calibration::inflate(Solution& s) const {
     close(v);
     unknowns += s.matches[v] >= kFewestOfVessel ? 2.0 : 0.0;
   }
-  scores *= sums / std::max(sums - unknowns, 1.0);
+  if (sums < kSumsPerUnknown * unknowns) return;
+  scores *= sums / (sums - unknowns);
   const Covariance excess = s.covariance * (scores - taken) * s.covariance;
   const Offsets factor =
       (1.0 + excess.diagonal().cwiseQuotient(s.covariance.diagonal()).cwiseMax(0.0).array()).sqrt();
