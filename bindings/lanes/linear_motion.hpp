@@ -21,8 +21,9 @@ namespace wakeline::python {
 template <StateLayout Layout>
 class LinearInLanes {
   template <class Motion>
-  struct Has : std::bool_constant<LinearMotionModel<Motion> && kForPacks<Motion> &&
-                                  kLayoutOf<Motion> == Layout> {};
+  struct Has : std::false_type {};
+  template <LinearMotionModel Motion>
+  struct Has<Motion> : std::bool_constant<kForPacks<Motion> && kLayoutOf<Motion> == Layout> {};
   using Models = Selected<Has, Motions>;
   static constexpr int kN = states_of(Layout);
   template <class Scalar>
