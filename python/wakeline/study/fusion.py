@@ -5,7 +5,7 @@
 - ``ais``: 40 vessels that report every 10 s, 1 to 20 s late; by the ``radar`` alone, ``both`` as
   they come, and both with a window of late data, ``in_place``. ``radar_by_law`` and
   ``both_by_law`` have every eighth vessel followed by an estimator that knows how vessels of the
-  scene move and which plots are theirs: none does better.
+  scene move and which plots are theirs.
 - ``wrong_ais``: 60 vessels of which 40 report, six of them wrongly: 2 NM off, a position that
   stands, at 0/0, an identity that two use, one that moves to another vessel, and a drift.
 

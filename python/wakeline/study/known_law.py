@@ -1,7 +1,7 @@
 """Particles that know the law by which vessels of a scene move.
 
-What they are wrong by is in the measurements, not in a model: an estimator that knows less is no
-better. A measurement that arrives late weighs the particles by where they were at its time. Source:
+What they err by comes from the measurements and from the number of particles, not from a model: a
+figure to measure estimators against that know less. A measurement that arrives late weighs the particles by where they were at its time. Source:
 M. Arulampalam, S. Maskell, N. Gordon, T. Clapp, IEEE Trans. Signal Processing 50, 2002 (SIR);
 M. Orton, A. Marrs, IEE Colloquium on Target Tracking, 2001 (late measurements).
 """
