@@ -1,9 +1,10 @@
 """Particles that know the law by which vessels of a scene move.
 
 What they err by comes from the measurements and from the number of particles, not from a model: a
-figure to measure estimators against that know less. A measurement that arrives late weighs the particles by where they were at its time. Source:
-M. Arulampalam, S. Maskell, N. Gordon, T. Clapp, IEEE Trans. Signal Processing 50, 2002 (SIR);
-M. Orton, A. Marrs, IEE Colloquium on Target Tracking, 2001 (late measurements).
+figure to measure estimators against that know less. A measurement that arrives late weighs the
+particles by where they were at its time. Source: M. Arulampalam, S. Maskell, N. Gordon, T. Clapp,
+IEEE Trans. Signal Processing 50, 2002 (SIR); M. Orton, A. Marrs, IEE Colloquium on Target Tracking,
+2001 (late measurements).
 """
 
 from __future__ import annotations
