@@ -234,6 +234,18 @@ def test_a_page_that_follows_has_the_picture(pictures, step_s, joins):
             assert row["name"] == name
 
 
+def test_a_page_has_the_motion_of_each_track_in_words():
+    place = dict.fromkeys(("north_m", "east_m", "vnorth_mps", "veast_mps"), 0.0)
+    scene, modes = Scene(), ["", *wl.tracking.MODE_NAMES]
+    tracks = [{"track_id": k, "mode": mode, **place} for k, mode in enumerate(modes)]
+    scene.take({"time_s": 0.0, "tracks": tracks})
+    rows = json.loads(scene.message(0)[0])["tracks"]
+    words = {row[0]: row[TRACK_COLUMNS.index("mode")] for row in rows}
+    for k, mode in enumerate(modes):
+        side = mode.removesuffix("_turn")
+        assert words[k] == (mode if side == mode else f"turning to {side}")
+
+
 def test_a_picture_of_steady_tracks_is_small():
     """1000 tracks that keep their course: far below 60 kB/s at four pictures a second."""
     rng = np.random.default_rng(1)

@@ -17,6 +17,7 @@ TRACK_COLUMNS = (
     *("name", "identity", "identity_probability"),
 )
 AIS_COLUMNS = ("id", "time", "north", "east", "vnorth", "veast", "heading", "name", "track")
+_MOTION = {"port_turn": "turning to port", "starboard_turn": "turning to starboard"}
 _LOOSE = {  # a smaller change needs no message: absolute, and relative
     "major": (1.0, 0.2),
     "minor": (1.0, 0.2),
@@ -174,6 +175,7 @@ def _track_row(track: Mapping[str, Any], time_s: float) -> list[Any]:
     major_m, minor_m, axis_rad = _ellipse(track.get("covariance"))
     cpa = track.get("cpa") or {}
     tcpa_s, age_s = cpa.get("tcpa_s"), track.get("age_s")
+    mode = track.get("mode", "")
     return [
         int(track["track_id"]),
         round(float(track.get("time_s", time_s)), 2),
@@ -181,7 +183,7 @@ def _track_row(track: Mapping[str, Any], time_s: float) -> list[Any]:
         *(_round(track[name], 2) for name in ("vnorth_mps", "veast_mps")),
         *(_round(major_m, 1), _round(minor_m, 1), _round(axis_rad, 2)),
         _round(time_s - age_s, 1) if _known(age_s) else None,
-        *(track.get("status", ""), track.get("mode", "")),
+        *(track.get("status", ""), _MOTION.get(mode, mode)),
         *(_round(track.get("existence"), 2), _round(cpa.get("cpa_m"), 0)),
         _round(time_s + tcpa_s, 0) if _known(tcpa_s) else None,
         _round(cpa.get("probability"), 2),
