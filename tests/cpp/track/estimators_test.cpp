@@ -3,6 +3,8 @@
 //
 // A tracker takes any estimator with the face of Imm, and any way to step many of them.
 #include "track/scene.hpp"
+#include "wakeline/filter/alpha_beta.hpp"
+#include "wakeline/filter/square_root_ukf.hpp"
 #include "wakeline/multimodel/adaptive_grid_imm.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
 #include "wakeline/multimodel/turning_chain.hpp"
@@ -67,6 +69,25 @@ TEST(TrackerEstimators, TreeOfModeHistories) {
 
 TEST(TrackerEstimators, MovingGrid) {
   expect_to_hold(AdaptiveGridImm(AdaptiveGrid{}, ModeChain<3>::staying(0.9), kTurning));
+}
+
+TEST(TrackerEstimators, ACopyContinuesBitForBitWithFiltersThatKeepMoreThanABelief) {
+  const Imm prototype(ModeChain<2>::from_sojourn_s({60.0, 60.0}), AlphaBeta<>(GrowingMemory{}),
+                      SquareRootUkf<ConstantVelocity>(ConstantVelocity{}));
+  using EitherTracker = Tracker<std::remove_const_t<decltype(prototype)>>;
+  TrackerConfig config;
+  config.max_tracks = 8;
+  EitherTracker tracker(test::kTestRadar, config, prototype);
+  EitherTracker copy(test::kTestRadar, config, prototype);
+  test::Sea sea(43);
+  for (int scan = 0; scan < 40; ++scan) {
+    const Plot plot = sea.plot(turning_boat(scan), 2.5 * scan);
+    if (scan == 10) copy.copy_state_from(tracker);
+    (void)tracker.process(2.5 * scan, {&plot, 1});
+    if (scan >= 10) (void)copy.process(2.5 * scan, {&plot, 1});
+  }
+  EXPECT_EQ(tracker.size(), 1);
+  EXPECT_TRUE(copy.save() == tracker.save());
 }
 
 TEST(TrackerEstimators, TracksInLanesAreThoseOfOneAfterTheOther) {

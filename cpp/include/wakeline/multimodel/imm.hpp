@@ -189,13 +189,6 @@ class Imm {
     });
   }
 
-  /// Copies the state of an estimator over the same models, without what only a step needs.
-  void copy_state_from(const Imm& other) noexcept
-      requires(requires(Bank& bank) { bank.template get<0>().to_assign(); }) {
-    gather([&](int) -> const Imm& { return other; });
-    started_ = other.started_;
-  }
-
   /// Saves or restores beliefs and mode probabilities.
   void archive(Archive& fields) {
     fields(probability_);

@@ -299,10 +299,11 @@ struct Picture {
     identities = other.identities;
     tracks.copy_from(other.tracks);
     tracks.for_each_slot([&](int slot) {
-      if constexpr (requires(Estimator & estimator) { estimator.copy_state_from(estimator); })
-        estimator_at(slot).copy_state_from(other.estimator_of(slot));
+      const Estimator& from = other.estimator_of(slot);
+      if constexpr (requires { InLanes<Estimator, double>::of(from); })
+        estimator_at(slot).gather([&](int) -> const Estimator& { return from; });
       else
-        estimator_at(slot) = other.estimator_of(slot);
+        estimator_at(slot) = from;
     });
   }
 
