@@ -96,6 +96,11 @@ TEST(ModeChain, StepsOfTimeAddUp) {
   expect_continuous(ModeChain<kRuntimeModes>::from_sojourn_s({60.0, 30.0, 10.0, 20.0}));
 }
 
+TEST(ModeChain, TakesAWholeNumberOfSeconds) {
+  const Three chain = Three::from_sojourn_s({60.0, 30.0, 10.0});
+  EXPECT_TRUE(matrices_near(chain.transition(2), chain.transition(2.0), {0, 0}));
+}
+
 TEST(ModeChain, StaysForTheSojournTime) {
   const double times[] = {60.0, 30.0, 10.0};
   const Three chain = Three::from_sojourn_s({times[0], times[1], times[2]});

@@ -130,9 +130,15 @@ class ModeChain {
     return continuous_ ? std::optional(matrix_) : std::nullopt;
   }
 
-  /// P(dt), row-stochastic, or that of each lane.
+  /// P(dt), row-stochastic.
+  [[nodiscard]] Matrix transition(double dt_s) const noexcept {
+    return continuous_ ? exponential(dt_s) : matrix_;
+  }
+
+  /// That of each lane.
   template <class Scalar>
-  [[nodiscard]] ModeMatrix<Scalar, K> transition(Scalar dt_s) const noexcept {
+  requires(kLanesOf<Scalar> > 1)
+      [[nodiscard]] ModeMatrix<Scalar, K> transition(Scalar dt_s) const noexcept {
     if (continuous_) return exponential(dt_s);
     return matrix_.template cast<Scalar>();
   }
