@@ -337,8 +337,7 @@ def _plots_of(truth: Truth, sector: dict[str, Any]) -> Iterator[tuple[float, flo
 
 def _plot_squares(states: np.ndarray, range_m: float, bearing_rad: float) -> np.ndarray:
     far_m = range_m - np.hypot(states[0], states[2])
-    aside_rad = bearing_rad - np.arctan2(states[2], states[0])
-    aside_rad = (aside_rad + np.pi) % (2 * np.pi) - np.pi
+    aside_rad = wl.wrap_angle(bearing_rad - np.arctan2(states[2], states[0]))
     return (far_m / FINE.range_std_m) ** 2 + (aside_rad / FINE.bearing_std_rad) ** 2
 
 
