@@ -707,7 +707,7 @@ def test_another_estimator_tracks():
     chain = wl.ModeChain.from_sojourn_s([60.0, 20.0, 20.0, 20.0])
     tracker = wl.Tracker(RADAR, estimator=wl.Imm(filters, chain))
     table = track_all(scans(40, clutter=0.5), tracker)[-1]
-    assert table.mode_probability.shape == (len(table), len(wl.tracking.MODE_NAMES))
+    assert table.mode_probability.shape == (len(table), len(filters))
     assert (np.array(table.status) != "tentative").sum() == 4
     np.testing.assert_allclose(table.mode_probability.sum(axis=1), 1.0, atol=1e-12)
 

@@ -84,7 +84,7 @@ TEST(Reported, AddsWhatStaysAndAnAlterationThatDoesNotShow) {
   const Gaussian<4> belief{{100.0, 6.0, -50.0, 8.0}, draw.definite<4>()};
   Mat<double, 2, 2> stays;
   stays << 9.0, 2.0, 2.0, 4.0;
-  const Gaussian<4> found = reported(belief, 1.0, stays);
+  const Gaussian<4> found = reported(belief, 1.0, 100, stays);
   EXPECT_EQ(found.mean, belief.mean);
   const Mat<double, 4, 4> more = found.covariance - belief.covariance;
   for (const double course_rad : {0.0, 1.0, 2.0}) {
@@ -127,7 +127,7 @@ TEST(Reported, IsTheErrorOfAFilterWhoseNoiseDoesNotCome) {
     const SettledFilter filter(psd);
     Gaussian<4> belief{Vec<double, 4>::Zero(), Mat<double, 4, 4>::Identity()};
     belief.covariance(0, 0) = belief.covariance(2, 2) = filter.variance;
-    const Gaussian<4> found = reported(belief, filter.gain, Mat<double, 2, 2>::Zero());
+    const Gaussian<4> found = reported(belief, filter.gain, 2000, Mat<double, 2, 2>::Zero());
     const double ratio = found.covariance(0, 0) / filter.error_variance;
     EXPECT_GE(ratio, 1.0) << filter.gain;
     EXPECT_LT(ratio, filter.gain < 0.05 ? 1.2 : 1.5) << filter.gain;
@@ -148,7 +148,18 @@ TEST(Reported, KeepsTheCovarianceOfAPlot) {
   Draw draw(8);
   const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
   for (const double gain : {1.0, 1.7})
-    EXPECT_EQ(reported(belief, gain, Mat<double, 2, 2>::Zero()).covariance, belief.covariance);
+    EXPECT_EQ(reported(belief, gain, 100, Mat<double, 2, 2>::Zero()).covariance, belief.covariance);
+}
+
+// A line through all plots since the start, however small its gain: no noise was allowed for.
+TEST(Reported, KeepsTheCovarianceOfALineThroughAllPlots) {
+  Draw draw(9);
+  const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
+  for (const int plots : {5, 40, 400}) {
+    const double gain = 2.0 * (2 * plots - 1) / (plots * (plots + 1.0));
+    EXPECT_EQ(reported(belief, gain, plots, Mat<double, 2, 2>::Zero()).covariance,
+              belief.covariance);
+  }
 }
 
 }  // namespace

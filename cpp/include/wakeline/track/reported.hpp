@@ -80,13 +80,15 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
 ///   its course for as long as the filter remembers, and neither came: the position errs by two
 ///   thirds of its variance (three quarters without maneuvers, the small-gain limit of an
 ///   alpha-beta filter, and a tenth less without outliers). The rest is left out as far as plots
-///   older than eight scans count, (1 - gain)⁸.
+///   older than eight scans count, (1 - gain)⁸, and the first of its `hits` plots no longer do: a
+///   line through n plots has the gain 4/n with neither noise nor outliers.
 /// - An alteration of the velocity by `kUnseen` of the speed, which does not show yet.
 /// - The errors of the position that stay from scan to scan.
-inline Gaussian<4> reported(Gaussian<4> kinematics, double gain,
+inline Gaussian<4> reported(Gaussian<4> kinematics, double gain, int hits,
                             const Mat<double, 2, 2>& stays_m2) noexcept {
   constexpr double kUnseen = 0.04;
-  const double held = std::pow(std::max(1.0 - gain, 0.0), 8);
+  const double of_a_line = std::min(4.0 / (hits * gain), 1.0);
+  const double held = std::pow(std::max(1.0 - gain, 0.0), 8) * (1.0 - std::pow(of_a_line, 8));
   const double errs = std::sqrt(1.0 - held / 3.0);
   const Vec<double, 4> scale(errs, 1.0, errs, 1.0);
   kinematics.covariance = scale.asDiagonal() * kinematics.covariance * scale.asDiagonal();
