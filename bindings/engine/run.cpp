@@ -127,8 +127,8 @@ int run_linear_in_lanes(const AnyFilter& filter, const Recordings& all) {
   for (int k = 0; k < reads.states; ++k)
     h.col(rows.row_of(reads.components[static_cast<std::size_t>(k)])) = of_read.col(k);
   std::vector<AnyBelief> starts;
+  AnyFilter one = filter;
   for (const AnyBelief& start : all.starts) {
-    AnyFilter one = filter;
     (void)one.start(start);
     starts.push_back(one.estimate());
   }
