@@ -103,13 +103,18 @@ State to_state(const DoubleArray& array) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
+/// A matrix of numbers row by row.
+template <class Result>
+Result from_rows(const double* numbers, Eigen::Index rows, Eigen::Index columns) noexcept {
+  Result matrix(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    for (Eigen::Index j = 0; j < columns; ++j) matrix(i, j) = numbers[columns * i + j];
+  return matrix;
+}
+
 template <class Result = Matrix>
 Result to_rows_and_columns(const DoubleArray& array) {
-  Result matrix(array.shape(0), array.shape(1));
-  for (py::ssize_t i = 0; i < array.shape(0); ++i)
-    for (py::ssize_t j = 0; j < array.shape(1); ++j)
-      matrix(i, j) = array.data()[array.shape(1) * i + j];
-  return matrix;
+  return from_rows<Result>(array.data(), array.shape(0), array.shape(1));
 }
 
 /// m x, as loops; see `product`.
@@ -209,10 +214,7 @@ Result written(int rows, int columns, const Call& call) noexcept {
   double numbers[kMaxStates * kMaxStates];
   std::fill_n(numbers, rows * columns, kNaN);
   call(numbers);
-  Result result(rows, columns);
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) result(i, j) = numbers[columns * i + j];
-  return result;
+  return from_rows<Result>(numbers, rows, columns);
 }
 
 /// Standard deviations by component, of those that a start over [x, vx, y, vy] does not give.
@@ -362,7 +364,7 @@ class FunctionMotion : public MotionOfFunctions {
     });
   }
 
-  std::array<MotionPointer, 3> compiled_;
+  std::array<MotionPointer, kRoles.size()> compiled_;
 };
 
 ReadingMatrix to_noise(const DoubleArray& covariance) {
@@ -413,9 +415,9 @@ class FunctionSensor : public PySensor {
       : reads_(reads),
         noise_(to_noise(covariance)),
         angles_(angles),
-        functions_({measure, or_none(jacobian)}),
-        compiled_{compiled<SensorPointer>("measure", "FunctionSensor", functions_[0]),
-                  compiled<SensorPointer>("jacobian", "FunctionSensor", functions_[1])} {
+        functions_({measure, or_none(jacobian)}) {
+    for (std::size_t k = 0; k < kRoles.size(); ++k)
+      compiled_[k] = compiled<SensorPointer>(kRoles[k], kType, functions_[k]);
     for (const int angle : angles)
       require(angle >= 0 && angle < numbers(), "angles",
               ("indices from 0 to " + std::to_string(numbers() - 1)).c_str(), angle);
@@ -431,7 +433,7 @@ class FunctionSensor : public PySensor {
     if (compiled_[0] != nullptr)
       return written<ReadingVector>(numbers(), 1, [&](double* to) { compiled_[0](x.data(), to); });
     return guarded<ReadingVector>(fault(), ReadingVector::Constant(numbers(), kNaN), [&] {
-      return ReadingVector(to_state(called(0, "measure", x, {numbers()})));
+      return ReadingVector(to_state(called(0, x, {numbers()})));
     });
   }
   [[nodiscard]] ReadingJacobian jacobian(const State& x) const noexcept override {
@@ -443,11 +445,10 @@ class FunctionSensor : public PySensor {
     if (compiled_[1] != nullptr)
       return written<ReadingJacobian>(numbers(), reads_.states,
                                       [&](double* to) { compiled_[1](x.data(), to); });
-    return guarded<ReadingJacobian>(fault(),
-                                    ReadingJacobian::Constant(numbers(), reads_.states, kNaN), [&] {
-                                      return to_rows_and_columns<ReadingJacobian>(
-                                          called(1, "jacobian", x, {numbers(), reads_.states}));
-                                    });
+    return guarded<ReadingJacobian>(
+        fault(), ReadingJacobian::Constant(numbers(), reads_.states, kNaN), [&] {
+          return to_rows_and_columns<ReadingJacobian>(called(1, x, {numbers(), reads_.states}));
+        });
   }
   [[nodiscard]] ReadingVector residual(const ReadingVector& a,
                                        const ReadingVector& b) const noexcept override {
@@ -461,9 +462,12 @@ class FunctionSensor : public PySensor {
   [[nodiscard]] const std::vector<int>& angles() const { return angles_; }
 
  private:
-  [[nodiscard]] DoubleArray called(std::size_t k, const char* role, const State& x,
+  static constexpr auto kType = "FunctionSensor";
+  static constexpr std::array kRoles{"measure", "jacobian"};
+
+  [[nodiscard]] DoubleArray called(std::size_t k, const State& x,
                                    const std::vector<py::ssize_t>& shape) const {
-    return numbers_of(described(role, "FunctionSensor", functions_[k]), functions_[k](to_array(x)),
+    return numbers_of(described(kRoles[k], kType, functions_[k]), functions_[k](to_array(x)),
                       shape);
   }
 
@@ -471,7 +475,7 @@ class FunctionSensor : public PySensor {
   ReadingMatrix noise_;
   std::vector<int> angles_;
   Functions functions_;
-  std::array<SensorPointer, 2> compiled_;
+  std::array<SensorPointer, kRoles.size()> compiled_;
 };
 
 /// An immutable object that copies share.
