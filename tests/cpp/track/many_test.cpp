@@ -298,7 +298,7 @@ int tracks_of_a_shoal(double clutter_cell_m, std::uint64_t seed) {
 
 TEST(Many, TheClutterMapQuietensAShoal) {
   int without = 0, with = 0;
-  constexpr int kShoals = 5;
+  constexpr int kShoals = 20;
   for (std::uint64_t seed = 4; seed < 4 + kShoals; ++seed) {
     without += tracks_of_a_shoal(0.0, seed);
     with += tracks_of_a_shoal(150.0, seed);
