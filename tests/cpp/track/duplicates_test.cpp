@@ -26,7 +26,7 @@ Track& open(TrackList& tracks, std::int64_t id, const Vec<double, 4>& mean) {
 }
 
 std::vector<int> found(Duplicates& duplicates, TrackList& tracks) {
-  const std::span<const int> slots = duplicates.find(tracks, tracks.slots(), kPeriod_s);
+  const std::span<const int> slots = duplicates.find(tracks, tracks.slots(), kPeriod_s, 0.3, 0.5);
   return {slots.begin(), slots.end()};
 }
 

@@ -48,6 +48,7 @@ class Imm {
         initial_(Probability::Constant(bank.size(), Scalar(1) / Scalar(bank.size()))),
         probability_(initial_),
         chain_(chain),
+        jumps_(chain),
         weight_(ModeMatrix<Scalar, kModels>::Zero(bank.size(), bank.size())),
         transition_(weight_) {
     if (chain.modes() != bank.size())
@@ -311,7 +312,7 @@ class Imm {
     if constexpr (kLanesOf<Scalar> == 1)
       transition_ = chain_.transition(double(dt_s)).template cast<Scalar>();
     else
-      transition_ = chain_.transition(dt_s);
+      transition_ = chain_.transition(dt_s, jumps_);
   }
 
   /// Fills `weight_(i, j) = P(mode i before | mode j now)` and returns P(mode j now).
@@ -348,7 +349,15 @@ class Imm {
     return result;
   }
 
+  /// One estimator mostly takes steps of one length; lanes take steps of many.
+  struct NoJumps {
+    explicit NoJumps(const ModeChain<kModels>&) noexcept {}
+  };
+
   ModeChain<kModels> chain_;
+  [[no_unique_address]] std::conditional_t<kLanesOf<Scalar> == 1, NoJumps,
+                                           typename ModeChain<kModels>::Jumps>
+      jumps_;
   ModeMatrix<Scalar, kModels> weight_;
   ModeMatrix<Scalar, kModels> transition_;
   Scalar transition_step_s_ = Scalar(-1);

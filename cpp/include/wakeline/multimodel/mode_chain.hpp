@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -130,16 +132,35 @@ class ModeChain {
     return continuous_ ? std::optional(matrix_) : std::nullopt;
   }
 
+  /// Powers of J = I + G / (fastest rate), the transition of one jump of the uniformised chain.
+  class Jumps {
+   public:
+    explicit Jumps(const ModeChain& chain) noexcept
+        : fastest_per_s_(chain.continuous_ ? -chain.matrix_.diagonal().minCoeff() : 0.0) {
+      const Matrix identity = Matrix::Identity(chain.modes(), chain.modes());
+      power_.fill(identity);
+      if (!(fastest_per_s_ > 0.0)) return;
+      const Matrix jump = identity + chain.matrix_ / fastest_per_s_;
+      for (std::size_t n = 1; n < power_.size(); ++n) power_[n] = product(power_[n - 1], jump);
+    }
+
+   private:
+    friend class ModeChain;
+    double fastest_per_s_;
+    std::array<Matrix, 19> power_;  ///< 1 / 18! is the rounding of 1
+  };
+
   /// P(dt), row-stochastic.
   [[nodiscard]] Matrix transition(double dt_s) const noexcept {
-    return continuous_ ? exponential(dt_s) : matrix_;
+    return continuous_ ? exponential(dt_s, Jumps(*this)) : matrix_;
   }
 
-  /// That of each lane.
+  /// That of each lane, with the powers of this chain.
   template <class Scalar>
   requires(kLanesOf<Scalar> > 1)
-      [[nodiscard]] ModeMatrix<Scalar, K> transition(Scalar dt_s) const noexcept {
-    if (continuous_) return exponential(dt_s);
+      [[nodiscard]] ModeMatrix<Scalar, K> transition(Scalar dt_s,
+                                                     const Jumps& jumps) const noexcept {
+    if (continuous_) return exponential(dt_s, jumps);
     return matrix_.template cast<Scalar>();
   }
 
@@ -244,32 +265,31 @@ class ModeChain {
     return result;
   }
 
-  /// exp(G dt) by uniformisation, whose terms are all positive, over a step halved until it is
-  /// short, then squared.
+  /// exp(G dt) = Σ e⁻ʳ rⁿ / n! Jⁿ, where r is the mean number of jumps in the step
+  /// (uniformisation, whose terms are all positive), over a step halved until r is at most 1, then
+  /// squared.
   template <class Scalar>
-  ModeMatrix<Scalar, K> exponential(Scalar dt_s) const noexcept {
+  static ModeMatrix<Scalar, K> exponential(Scalar dt_s, const Jumps& jumps) noexcept {
     using Result = ModeMatrix<Scalar, K>;
-    const Matrix identity = Matrix::Identity(modes(), modes());
-    Result sum = identity.template cast<Scalar>();
-    const double fastest = -matrix_.diagonal().minCoeff();
-    if (!(fastest > 0.0)) return sum;
-    // Expected number of (uniformised) jumps in the step.
-    constexpr double kMost = std::numeric_limits<double>::max();
-    const Scalar jumps = Scalar(fastest) * dt_s;
-    Scalar rate = select(jumps < Scalar(kMost), jumps, Scalar(kMost));
-    rate = select(dt_s > Scalar(0), rate, Scalar(0));
+    using Real = RealOf<Scalar>;
+    Result sum = jumps.power_[0].template cast<Scalar>();
+    if (!(jumps.fastest_per_s_ > 0.0)) return sum;
+    constexpr Real kMost = std::numeric_limits<Real>::max();
+    Scalar mean = Scalar(jumps.fastest_per_s_) * dt_s;
+    mean = select(mean < Scalar(kMost), mean, Scalar(kMost));
+    mean = select(dt_s > Scalar(0), mean, Scalar(0));
     Scalar halvings = Scalar(0);
-    for (auto is_long = rate > Scalar(0.5); any(is_long); is_long = rate > Scalar(0.5)) {
+    for (auto is_long = mean > Scalar(1); any(is_long); is_long = mean > Scalar(1)) {
       halvings += select(is_long, Scalar(1), Scalar(0));
-      rate *= select(is_long, Scalar(0.5), Scalar(1));
+      mean *= select(is_long, Scalar(0.5), Scalar(1));
     }
-    const Matrix jump = identity + matrix_ / fastest;
-    Result term = sum;
-    for (int n = 1; n <= 14; ++n) {
-      term = product(term, jump);
-      const Scalar share = rate / Scalar(n);
-      for (Eigen::Index i = 0; i < term.size(); ++i) term.data()[i] *= share;
-      for (Eigen::Index i = 0; i < term.size(); ++i) sum.data()[i] += term.data()[i];
+    constexpr Real kRounding = std::numeric_limits<Real>::epsilon() / 4;
+    Scalar share = Scalar(1);
+    for (std::size_t n = 1; n < jumps.power_.size() && any(share > Scalar(kRounding)); ++n) {
+      share *= mean / Scalar(Real(n));
+      const Matrix& power = jumps.power_[n];
+      for (Eigen::Index i = 0; i < sum.size(); ++i)
+        sum.data()[i] += share * Scalar(power.data()[i]);
     }
     normalize_rows(sum);
     for (Scalar n = Scalar(0); any(n < halvings); n += Scalar(1)) {
@@ -284,8 +304,8 @@ class ModeChain {
   template <class Scalar>
   static void normalize_rows(ModeMatrix<Scalar, K>& matrix) noexcept {
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      const Scalar sum = row_sum(matrix, i);
-      for (Eigen::Index j = 0; j < matrix.cols(); ++j) matrix(i, j) /= sum;
+      const Scalar scale = Scalar(1) / row_sum(matrix, i);
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j) matrix(i, j) *= scale;
     }
   }
 

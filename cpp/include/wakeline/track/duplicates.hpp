@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/place_index.hpp"
@@ -75,11 +76,12 @@ class Duplicates {
 
   /// Which tracks of these slots are to be deleted, in order: tentative ones at once, those with a
   /// number after some scans in a row, which it counts. Valid until the next call.
-  /// Tracks whose times are more than two periods of the antenna apart are not compared.
-  std::span<const int> find(TrackList& tracks, std::span<const int> slots,
-                            double period_s) noexcept {
+  /// Tracks whose times are more than two periods of the antenna apart are not compared. The slots
+  /// are those between two bearings, which only serves to leave out others sooner.
+  std::span<const int> find(TrackList& tracks, std::span<const int> slots, double period_s,
+                            double from_rad, double to_rad) noexcept {
     longest_s_ = 2.0 * period_s;
-    index(tracks, slots);
+    index(tracks, slots, Outline(from_rad, to_rad));
     found_.clear();
     for (const int slot : slots) {
       Track& track = tracks.at(slot);
@@ -93,18 +95,48 @@ class Duplicates {
   }
 
  private:
-  /// Indexes the tracks that may be on the target of one of the slots.
-  void index(const TrackList& tracks, std::span<const int> slots) noexcept {
+  /// The least of strips about some positions, each along a sight and in the middle between them.
+  class Outline {
+   public:
+    Outline(double from_rad, double to_rad) noexcept {
+      const double middle_rad = from_rad + (to_rad - from_rad) / 2;
+      for (int k = 0; k < 3; ++k) {
+        const double rad = k == 0 ? from_rad : k == 1 ? to_rad : middle_rad + kPi<double> / 2;
+        across_.row(k) << -std::sin(rad), std::cos(rad);
+        // No two places are farther apart so than they are north or east.
+        across_.row(k) /= across_.row(k).cwiseAbs().sum();
+      }
+    }
+
+    void add(const Vec<double, 2>& position) noexcept {
+      const Vec<double, 3> across_m = across_ * position;
+      least_m_ = least_m_.cwiseMin(across_m);
+      greatest_m_ = greatest_m_.cwiseMax(across_m);
+    }
+
+    /// A position is not nearer to any of these, north or east; negative inside.
+    [[nodiscard]] double apart_m(const Vec<double, 2>& position) const noexcept {
+      const Vec<double, 3> across_m = across_ * position;
+      return (least_m_ - across_m).cwiseMax(across_m - greatest_m_).maxCoeff();
+    }
+
+   private:
+    static constexpr double kNowhere = std::numeric_limits<double>::infinity();
+    Mat<double, 3, 2> across_;
+    Vec<double, 3> least_m_ = Vec<double, 3>::Constant(kNowhere), greatest_m_ = -least_m_;
+  };
+
+  /// Indexes the tracks that may be on the target of one of the slots, about which it draws an
+  /// outline.
+  void index(const TrackList& tracks, std::span<const int> slots, Outline outline) noexcept {
     positions_.clear();
     way_m_ = 0.0;
     if (slots.empty()) return;
     constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    Vec<double, 2> south_west = Vec<double, 2>::Constant(kNowhere), north_east = -south_west;
     double begin_s = kNowhere, end_s = -kNowhere, widest = 0.0;
     for (const int slot : slots) {
       const Track& track = tracks.at(slot);
-      south_west = south_west.cwiseMin(track.position());
-      north_east = north_east.cwiseMax(track.position());
+      outline.add(track.position());
       begin_s = std::min(begin_s, track.time_s);
       end_s = std::max(end_s, track.time_s);
       widest = std::max(widest, widest_m2(track));
@@ -112,19 +144,15 @@ class Duplicates {
     for (const int slot : tracks.slots()) {
       const Track& track = tracks.at(slot);
       ends_[static_cast<std::size_t>(slot)] = 0;
-      const Vec<double, 2> position = track.position(), velocity = track.velocity();
       const double way_m =
-          std::max(std::abs(velocity[0]), std::abs(velocity[1])) *
+          track.velocity().cwiseAbs().maxCoeff() *
           std::min(std::max(end_s - track.time_s, track.time_s - begin_s), longest_s_);
-      const double apart_m =
-          std::max(std::max(south_west[0] - position[0], position[0] - north_east[0]),
-                   std::max(south_west[1] - position[1], position[1] - north_east[1])) -
-          way_m;
+      const double apart_m = outline.apart_m(track.position()) - way_m;
       const double variance_m2 = widest_m2(track);
-      if (!is_finite(position) ||
+      if (!is_finite(track.position()) ||
           (apart_m > 0.0 && apart_m * apart_m > reach_m2(widest + variance_m2)))
         continue;
-      positions_.add(position, variance_m2, slot);
+      positions_.add(track.position(), variance_m2, slot);
       way_m_ = std::max(way_m_, way_m);
     }
     positions_.sort();

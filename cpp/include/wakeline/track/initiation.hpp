@@ -191,12 +191,12 @@ class TrackInitiation {
   }
 
  private:
-  /// Free plots pair with those of the two turns before, so that they are sorted in after a part of
-  /// a turn, and dropped after three.
+  /// Free plots pair with those of half a turn to two and a half before, so that they are sorted in
+  /// after half a turn, and dropped after three.
   void keep_free(const ScanPlots& plots, const PlotOwnership& ownership, double beam_rad,
                  bool whole_turn) noexcept {
-    const bool sorts = whole_turn || beam_rad - sorted_rad_ >= Beam::kTurn / 4;
-    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 2.0 : 3.25) * Beam::kTurn);
+    const bool sorts = whole_turn || beam_rad - sorted_rad_ >= Beam::kTurn / 2;
+    if (sorts) before_.drop_before(beam_rad - (whole_turn ? 2.0 : 3.0) * Beam::kTurn);
     before_.add(plots, ownership.free_probability(), config_.free_plot);
     if (!sorts) return;
     before_.sort();

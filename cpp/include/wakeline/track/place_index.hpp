@@ -44,18 +44,9 @@ class PlaceIndex {
     for (Layer& layer : layers_) layer.places.sort();
   }
 
-  /// Calls `f(name)` for every place in a square about a position, layer by layer:
-  /// `reach_m(variance)` is its half side for places of at most that variance.
-  template <class Reach, class Function>
-  void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
-                     Function&& function) const {
-    for (const Layer& layer : layers_)
-      if (!layer.places.empty())
-        layer.places.for_each_near(position, reach_m(layer.largest_m2), function);
-  }
-
-  /// The same for the nearest places of each layer, at most so many of a layer, about from the
-  /// nearest on. Where all is crowded on one spot, a search takes no longer than elsewhere.
+  /// Calls `f(name)` for the places in a square about a position, layer by layer, at most so many
+  /// of a layer, about the nearest: `reach_m(variance)` is its half side for places of at most that
+  /// variance. Where all is crowded on one spot, a search takes no longer than elsewhere.
   template <class Reach, class Function>
   void for_each_nearest(const Vec<double, 2>& position, const Reach& reach_m, int most,
                         Function&& function) const {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <vector>
@@ -17,8 +19,9 @@ namespace wakeline {
 ///
 /// Every √n of n points, from south to north, make a strip, and each strip is sorted from west to
 /// east. A search for the few points near a position takes about log n steps for any distribution
-/// of the points, also with all in a harbour but one far off. Sorting takes n log n. Memory is
-/// taken by the constructor.
+/// of the points, also with all in a harbour but one far off. Sorting takes n log n. Few points, as
+/// a sector has, are left as they are, and a search looks at all of them. Memory is taken by the
+/// constructor.
 class PlaneIndex {
  public:
   explicit PlaneIndex(int capacity) {
@@ -39,60 +42,40 @@ class PlaneIndex {
 
   /// Sorts the points; to be called when all are there.
   void sort() noexcept {
-    std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
-      return a.north < b.north || (a.north == b.north && a.name < b.name);
-    });
-    north_m_ = west_m_ = east_m_ = 0.0;
-    if (points_.empty()) return;
-    north_m_ = points_.back().north;
-    west_m_ = kNowhere, east_m_ = -kNowhere;
-    const auto size = static_cast<std::ptrdiff_t>(points_.size());
-    per_strip_ = std::max<std::ptrdiff_t>(
-        1, static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size)))));
+    if (points_.size() <= kFew) return lay_out();
+    const std::ptrdiff_t size = std::ssize(points_);
+    per_strip_ = static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size))));
+    part(0, (size + per_strip_ - 1) / per_strip_);
+    north_m_ = east_m_ = -kNowhere;
+    west_m_ = kNowhere;
     for (std::ptrdiff_t first = 0; first < size; first += per_strip_) {
-      south_m_.push_back(points_[static_cast<std::size_t>(first)].north);
       const auto begin = points_.begin() + first;
-      std::sort(begin, points_.begin() + std::min(first + per_strip_, size),
-                [](const Point& a, const Point& b) {
-                  return a.east < b.east || (a.east == b.east && a.name < b.name);
-                });
+      const auto end = points_.begin() + strip_end(first / per_strip_);
+      std::sort(begin, end, [](const Point& a, const Point& b) {
+        return a.east < b.east || (a.east == b.east && a.name < b.name);
+      });
+      double south_m = kNowhere;
+      for (auto point = begin; point != end; ++point) {
+        south_m = std::min(south_m, point->north);
+        north_m_ = std::max(north_m_, point->north);
+      }
+      south_m_.push_back(south_m);
       west_m_ = std::min(west_m_, begin->east);
-      east_m_ = std::max(east_m_, points_[at(std::min(first + per_strip_, size) - 1)].east);
+      east_m_ = std::max(east_m_, std::prev(end)->east);
     }
   }
 
-  /// Calls `f(name)` for every point in the square of half side `reach_m` about a position; points
-  /// of one place in the order of their names.
-  template <class Function>
-  void for_each_near(const Vec<double, 2>& position, double reach_m, Function&& function) const {
-    const double south = position[0] - reach_m;
-    const double north = position[0] + reach_m;
-    const double west = position[1] - reach_m;
-    const double east = position[1] + reach_m;
-    auto strip =
-        first_not_below(south_m_.begin(), std::ssize(south_m_), south, [](double m) { return m; }) -
-        south_m_.begin();
-    if (strip > 0) --strip;  // it may reach beyond its southernmost point
-    for (; strip < std::ssize(south_m_) && south_m_[static_cast<std::size_t>(strip)] <= north;
-         ++strip) {
-      const auto end = points_.begin() + std::min((strip + 1) * per_strip_, std::ssize(points_));
-      const auto begin = points_.begin() + strip * per_strip_;
-      auto point = first_not_below(begin, end - begin, west, [](const Point& p) { return p.east; });
-      for (; point != end && point->east <= east; ++point)
-        if (point->north >= south && point->north <= north) function(point->name);
-    }
-  }
-
-  /// Calls `f(name)` for the points in that square, from the nearest strip outwards and in each
-  /// strip from the nearest point outwards, until it has been called so many times.
+  /// Calls `f(name)` for the points in the square of half side `reach_m` about a position, at most
+  /// so many, and then of the nearest strips and in each strip of the nearest points.
   template <class Function>
   void for_each_nearest(const Vec<double, 2>& position, double reach_m, int most,
                         Function&& function) const {
+    const std::ptrdiff_t strips = std::ssize(south_m_);
+    if (strips == 0) return look_at_all(position, reach_m, most, function);
     const double south = position[0] - reach_m;
     const double north = position[0] + reach_m;
-    const std::ptrdiff_t strips = std::ssize(south_m_);
-    if (strips == 0 || south_m_.front() > north || north_m_ < south ||
-        west_m_ - position[1] > reach_m || position[1] - east_m_ > reach_m)
+    if (south_m_.front() > north || north_m_ < south || west_m_ - position[1] > reach_m ||
+        position[1] - east_m_ > reach_m)
       return;
     std::ptrdiff_t up =
         first_not_below(south_m_.begin(), strips, position[0], [](double m) { return m; }) -
@@ -122,8 +105,65 @@ class PlaneIndex {
   };
 
   static constexpr double kNowhere = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kFew = 64;  ///< points that are not sorted
+  static constexpr std::size_t kSide = 8;  ///< numbers in the widest register
+
+  /// Has no point of the strips from one to another north of one of a later strip.
+  void part(std::ptrdiff_t first, std::ptrdiff_t last) noexcept {
+    if (last - first < 2) return;
+    const std::ptrdiff_t middle = (first + last) / 2;
+    std::nth_element(points_.begin() + first * per_strip_, points_.begin() + middle * per_strip_,
+                     points_.begin() + strip_end(last - 1), [](const Point& a, const Point& b) {
+                       return a.north < b.north || (a.north == b.north && a.name < b.name);
+                     });
+    part(first, middle);
+    part(middle, last);
+  }
+
+  [[nodiscard]] std::ptrdiff_t strip_end(std::ptrdiff_t strip) const noexcept {
+    return std::min((strip + 1) * per_strip_, std::ssize(points_));
+  }
 
   static std::size_t at(std::ptrdiff_t index) noexcept { return static_cast<std::size_t>(index); }
+
+  /// Lays few points out side by side, and as many at nowhere as fill the last register.
+  void lay_out() noexcept {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      few_north_m_[k] = points_[k].north;
+      few_east_m_[k] = points_[k].east;
+    }
+    for (std::size_t k = points_.size(); k % kSide != 0; ++k) few_north_m_[k] = kNan;
+  }
+
+  /// `for_each_nearest` of few points, without a branch for each, which a processor would guess
+  /// wrong.
+  template <class Function>
+  void look_at_all(const Vec<double, 2>& position, double reach_m, int most,
+                   Function&& function) const {
+    const double south = position[0] - reach_m, north = position[0] + reach_m;
+    const double west = position[1] - reach_m, east = position[1] + reach_m;
+    std::array<std::int64_t, kFew> is_inside;
+    const std::size_t size = points_.size(), filled = (size + kSide - 1) / kSide * kSide;
+    for (std::size_t k = 0; k < filled; ++k)
+      is_inside[k] = (few_north_m_[k] >= south) & (few_north_m_[k] <= north) &
+                     (few_east_m_[k] >= west) & (few_east_m_[k] <= east);
+    std::array<const Point*, kFew> found;
+    std::ptrdiff_t count = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      found[at(count)] = &points_[k];
+      count += is_inside[k];
+    }
+    if (count > most) {
+      const auto apart_m = [&](const Point* point) {
+        return std::max(std::abs(point->north - position[0]), std::abs(point->east - position[1]));
+      };
+      std::nth_element(found.begin(), found.begin() + most, found.begin() + count,
+                       [&](const Point* a, const Point* b) { return apart_m(a) < apart_m(b); });
+      count = most;
+    }
+    for (std::ptrdiff_t k = 0; k < count; ++k) function(found[at(k)]->name);
+  }
 
   /// Calls `f(point)` for the points of a strip within reach, from the nearest to an east outwards,
   /// as long as it returns true.
@@ -131,7 +171,7 @@ class PlaneIndex {
   void visit_strip(std::ptrdiff_t strip, double east_m, double reach_m,
                    const Function& function) const {
     const auto begin = points_.begin() + strip * per_strip_;
-    const auto end = points_.begin() + std::min((strip + 1) * per_strip_, std::ssize(points_));
+    const auto end = points_.begin() + strip_end(strip);
     auto right = first_not_below(begin, end - begin, east_m, [](const Point& p) { return p.east; });
     auto left = right;
     while (right != end || left != begin) {
@@ -155,8 +195,9 @@ class PlaneIndex {
     return first;
   }
 
-  std::vector<Point> points_;    ///< strip by strip, each from west to east
-  std::vector<double> south_m_;  ///< southernmost point of each strip
+  std::vector<Point> points_;    ///< strip by strip, each from west to east; few as they came
+  std::vector<double> south_m_;  ///< southernmost point of each strip; none of few points
+  std::array<double, kFew> few_north_m_{}, few_east_m_{};  ///< of few points, as they came
   std::ptrdiff_t per_strip_ = 1;
   double north_m_ = 0.0, west_m_ = 0.0, east_m_ = 0.0;  ///< of the outermost points
 };

@@ -93,7 +93,7 @@ class ScanStages {
     for_each_group(due_, [&](std::span<const int> slots) { update(slots); });
 
     confirm_and_delete();
-    delete_duplicates();
+    delete_duplicates(sector);
     for (const int slot : touched_) picture_.number_confirmed(picture_.tracks.at(slot));
     state().clutter.learn(
         state().plots, state().ownership.clutter_probability(),
@@ -645,8 +645,13 @@ class ScanStages {
     forget_lost();
   }
 
-  void delete_duplicates() noexcept {
-    for (const int slot : duplicates_.find(picture_.tracks, due_, picture_.longest_period_s()))
+  void delete_duplicates(const Sector* sector) noexcept {
+    const double from_rad = sector == nullptr ? 0.0 : sector->from_rad;
+    const double to_rad =
+        from_rad +
+        (sector == nullptr ? kPi<double> / 2 : Beam::width_rad(from_rad, sector->to_rad));
+    for (const int slot :
+         duplicates_.find(picture_.tracks, due_, picture_.longest_period_s(), from_rad, to_rad))
       lose(picture_.tracks.at(slot), LossReason::kDuplicate);
     forget_lost();
   }
