@@ -385,6 +385,7 @@ def test_a_sector_is_drawn_about_own_ship(page, harbor):
 def test_a_drag_moves_the_picture_and_measures(page, harbor):
     show(page, harbor)
     page.drag(polar(page, 1.0, 500.0), polar(page, 1.0, 1500.0))
+    settle(page)
     shown = page.run("wakeline.view.toScreen(0, 0)")
     box = page.run("wakeline.view.middle")
     moved_m = math.hypot(shown[0] - box[0], shown[1] - box[1]) / page.run("wakeline.view.scale")

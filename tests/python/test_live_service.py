@@ -43,7 +43,7 @@ def turn(k, begin_s, period_s=2.0):
     """The lines of one turn with two vessels."""
     t = begin_s + period_s * k
     plots = [
-        {"time_s": t, "range_m": 2000.0 - 6.0 * period_s * k, "bearing_rad": 0.7},
+        {"time_s": t, "range_m": 2000.0 - 2.0 * period_s * k, "bearing_rad": 0.7},
         {"time_s": t, "range_m": 1500.0 + 5.0 * period_s * k, "bearing_rad": 3.9},
     ]
     mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}

@@ -122,6 +122,7 @@ export class Tools {
   }
 
   lift(event) {
+    this.move(event);
     this.pointers.delete(event.pointerId);
     if (this.pointers.size < 2) this.pinch = null;
     const { drag } = this;
