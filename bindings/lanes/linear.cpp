@@ -107,7 +107,6 @@ class LinearFilter {
   /// In lanes whose reading is NaN nothing changes.
   template <class Sensor>
   Step<kMostNumbers, Lanes> update(const Sensor&, const Vec<Lanes, kMostNumbers>& z) noexcept {
-    constexpr double kRootOf2Pi = 2.506628274631000502415765284811045253007;
     const auto& p = belief_.covariance;
     Correction<kMostNumbers, Lanes> correction;
     Lanes s[kMostNumbers][kMostNumbers], gain[kMaxStates][kMostNumbers], whitened[kMostNumbers];

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -399,6 +400,18 @@ def radar_of(simulator: RadarSimulator, **others: Any) -> wl.Radar:
         period_s=simulator.period_s,
         **others,
     )
+
+
+def arrivals(
+    calls: Sequence[tuple[Any, ...]], times_s: Iterable[float]
+) -> Iterator[tuple[float, Sequence[tuple[Any, ...]]]]:
+    """Each time with the calls, sorted by arrival, that have come since the one before."""
+    arrival_s = [call[0] for call in calls]
+    done = 0
+    for now_s in times_s:
+        come = bisect_right(arrival_s, now_s, lo=done)
+        yield now_s, calls[done:come]
+        done = come
 
 
 def finite(value: float | None) -> float | None:

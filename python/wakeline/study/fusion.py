@@ -16,8 +16,7 @@ the runs, rounded up, is made of each scene.
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +28,7 @@ from wakeline._units import NAUTICAL_MILE_M
 from wakeline.scenario import RadarSimulator
 from wakeline.scenario.truth import Segment, Truth
 
-from .base import Done, Picture, Plan, Request, Rows, Study, means_of, radar_of
+from .base import Done, Picture, Plan, Request, Rows, Study, arrivals, means_of, radar_of
 from .known_law import Law, Particles
 
 if TYPE_CHECKING:
@@ -224,18 +223,6 @@ def _tracker(sensors: set[int], window_s: float) -> tuple[wl.Tracker, dict[int, 
     radars = [radar_of(simulators[k]) for k in used]
     tracker = wl.LateWindow(radars, window_s=window_s) if window_s else wl.Tracker(radars)
     return tracker, {k: number for number, k in enumerate(used)}
-
-
-def arrivals(
-    calls: Sequence[tuple[Any, ...]], times_s: Iterable[float]
-) -> Iterator[tuple[float, Sequence[tuple[Any, ...]]]]:
-    """Each time with the calls, sorted by arrival, that have come since the one before."""
-    arrival_s = [call[0] for call in calls]
-    done = 0
-    for now_s in times_s:
-        come = bisect_right(arrival_s, now_s, lo=done)
-        yield now_s, calls[done:come]
-        done = come
 
 
 def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, float]:

@@ -20,8 +20,7 @@ from wakeline import metrics, plot, recording
 from wakeline.recording import Episode, Tracks
 from wakeline.tracking import read_settings
 
-from .base import Done, Picture, Plan, Request, Rows, Study, means_of
-from .fusion import arrivals
+from .base import Done, Picture, Plan, Request, Rows, Study, arrivals, means_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

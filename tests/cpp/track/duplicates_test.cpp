@@ -105,7 +105,8 @@ TEST(Duplicates, TwoTracksAreComparedAtOneTime) {
   EXPECT_TRUE(found(duplicates, tracks).empty()) << "too far apart in time to be compared";
 }
 
-// Tracks of sizes and times that differ, in a crowd: those of some slots as by comparing all.
+// Tracks of sizes and times that differ, in a crowd: those of some slots, most of them between two
+// bearings, as by comparing all.
 TEST(Duplicates, AreThoseOfAllPairs) {
   const TrackerConfig config{.duplicate_distance = 2.0, .vessel_length_m = 12.0};
   test::Draw draw(5);
@@ -113,6 +114,7 @@ TEST(Duplicates, AreThoseOfAllPairs) {
     TrackList tracks(100);
     Duplicates duplicates(config, kThreshold);
     std::vector<int> slots;
+    const double from_rad = 0.7 * run, to_rad = from_rad + 0.8;
     for (int k = 1; k <= 100; ++k) {
       Track& track = open(tracks, -k, Vec<double, 4>::Zero());
       const auto axis = [&] { return draw.uniform(-400.0, 400.0); };
@@ -120,7 +122,9 @@ TEST(Duplicates, AreThoseOfAllPairs) {
       track.kinematics.covariance *= draw.uniform(0.0, 1.0) < 0.1 ? 100.0 : 1.0;
       track.time_s = draw.uniform(0.0, 3.0 * kPeriod_s);
       track.existence = draw.uniform(0.1, 0.9);
-      if (k % 3 == run % 3) slots.push_back(track.slot);
+      const double bearing_rad = std::atan2(track.position()[1], track.position()[0]);
+      if ((run % 2 == 0 && k % 3 == 0) || compass_angle(bearing_rad - from_rad) < to_rad - from_rad)
+        slots.push_back(track.slot);
     }
     std::vector<int> expected;
     for (const int slot : slots) {
@@ -139,7 +143,7 @@ TEST(Duplicates, AreThoseOfAllPairs) {
         break;
       }
     }
-    const std::span<const int> found = duplicates.find(tracks, slots, kPeriod_s);
+    const std::span<const int> found = duplicates.find(tracks, slots, kPeriod_s, from_rad, to_rad);
     EXPECT_EQ(std::vector<int>(found.begin(), found.end()), expected);
   }
 }

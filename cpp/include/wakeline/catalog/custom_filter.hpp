@@ -210,7 +210,6 @@ struct RuntimeInnovation {
 template <class BeliefType>
 [[gnu::noinline]] Correction<kMostNumbers> corrected(const RuntimeInnovation& one,
                                                      BeliefType& belief) noexcept {
-  constexpr double kRootOf2Pi = 2.506628274631000502415765284811045253007;
   Correction<kMostNumbers> correction;
   correction.status = one.status;
   if (one.status != Status::kOk) return correction;

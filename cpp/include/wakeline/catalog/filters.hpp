@@ -201,18 +201,15 @@ template <class Kind, class Value>
 inline constexpr bool kMakes = std::is_constructible_v<Kind, const Value&> &&
                                (std::is_same_v<Kind, Value> || !std::is_base_of_v<Kind, Value>);
 
-/// The filters of a bank as `convert` gives them, where it takes all of them and they make a
-/// `Kind`; else none.
-template <class Kind, class FilterList, class Convert = std::identity>
-std::vector<Kind> filters_as(const AnyFilterBankOf<FilterList>& bank, const Convert& convert = {}) {
+/// The filters of a bank where all of them make a `Kind`; else none.
+template <class Kind, class FilterList>
+std::vector<Kind> filters_as(const AnyFilterBankOf<FilterList>& bank) {
   std::vector<Kind> filters;
   for (int k = 0; k < bank.size(); ++k) {
     const bool taken = std::visit(
         [&](const auto& filter) {
-          if constexpr (requires {
-                          requires kMakes<Kind, std::decay_t<decltype(convert(filter))>>;
-                        }) {
-            filters.push_back(convert(filter));
+          if constexpr (kMakes<Kind, std::decay_t<decltype(filter)>>) {
+            filters.push_back(filter);
             return true;
           } else {
             return false;

@@ -199,12 +199,14 @@ StatusOf<Scalar> factor_failure(const Mat<Scalar, M, M>& innovation_covariance) 
                        Status::kNotPositiveDefinite);
 }
 
+/// The square root of 2π.
+inline constexpr double kRootOf2Pi = 2.506628274631000502415765284811045253007;
+
 /// Sets NIS = |L⁻¹ v|², the peak of the likelihood, and the status of a correction.
 template <int M, class Scalar>
 void rate(Correction<M, Scalar>& correction, const Vec<Scalar, M>& whitened,
           const Cholesky<M, Scalar>& factor) noexcept {
   using std::isfinite;
-  constexpr double kRootOf2Pi = 2.506628274631000502415765284811045253007;
   constexpr double kScale = [] {
     double scale = 1.0;
     for (int m = 0; m < M; ++m) scale /= kRootOf2Pi;

@@ -565,7 +565,7 @@ class ScanStages {
     if (!track.confirmed()) return *slowest;
     for (const RadarState& other : picture_.radars) {
       const double period_s = other.radar.period_s;
-      if (other.in_use && period_s > slowest->radar.period_s &&
+      if (other.in_use && other.started && period_s > slowest->radar.period_s &&
           state().time_s - other.look(track).looked_s < kSilentPeriods * period_s &&
           other.covers(track.position()))
         slowest = &other;
