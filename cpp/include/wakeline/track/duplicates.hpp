@@ -95,7 +95,7 @@ class Duplicates {
   }
 
  private:
-  /// The least of strips about some positions, each along a sight and in the middle between them.
+  /// The narrowest strips about some positions: along two bearings, and across the middle one.
   class Outline {
    public:
     Outline(double from_rad, double to_rad) noexcept {
