@@ -87,11 +87,10 @@ TEST(Reported, AddsWhatStaysAndAnAlterationThatDoesNotShow) {
   const Gaussian<4> found = reported(belief, 1.0, 100, stays);
   EXPECT_EQ(found.mean, belief.mean);
   const Mat<double, 4, 4> more = found.covariance - belief.covariance;
-  for (const double course_rad : {0.0, 1.0, 2.0}) {
-    const Vec<double, 2> u = towards(course_rad);
-    const Vec<double, 4> velocity(0.0, u[0], 0.0, u[1]);
-    EXPECT_NEAR(std::sqrt(velocity.dot(more * velocity)) / 10.0, 0.04, 1e-12);
-  }
+  const Vec<double, 4> ahead(0.0, 0.6, 0.0, 0.8), abeam(0.0, -0.8, 0.0, 0.6);
+  EXPECT_NEAR(std::sqrt(ahead.dot(more * ahead)) / 10.0, 0.02, 1e-12) << "of the speed";
+  EXPECT_NEAR(std::sqrt(abeam.dot(more * abeam)) / 10.0, 0.06, 1e-12) << "of the course";
+  EXPECT_NEAR(ahead.dot(more * abeam), 0.0, 1e-12);
   EXPECT_NEAR(more(0, 0), 9.0, 1e-12);
   EXPECT_NEAR(more(0, 2), 2.0, 1e-12);
   EXPECT_NEAR(more(2, 2), 4.0, 1e-12);

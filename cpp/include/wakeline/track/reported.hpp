@@ -82,21 +82,28 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
 ///   alpha-beta filter, and a tenth less without outliers). The rest is left out as far as plots
 ///   older than eight scans count, (1 - gain)⁸, and the first of its `hits` plots no longer do: a
 ///   line through n plots has the gain 4/n with neither noise nor outliers.
-/// - An alteration of the velocity by `kUnseen` of the speed, which does not show yet.
+/// - An alteration that does not show yet: of the course by `kUnseenCourse_rad`, of the speed by
+///   `kUnseenSpeed` of it.
 /// - The errors of the position that stay from scan to scan.
 inline Gaussian<4> reported(Gaussian<4> kinematics, double gain, int hits,
                             const Mat<double, 2, 2>& stays_m2) noexcept {
-  constexpr double kUnseen = 0.04;
+  constexpr double kUnseenCourse_rad = 0.06, kUnseenSpeed = 0.02;
   const double of_a_line = std::min(4.0 / (hits * gain), 1.0);
   const double held = std::pow(std::max(1.0 - gain, 0.0), 8) * (1.0 - std::pow(of_a_line, 8));
   const double errs = std::sqrt(1.0 - held / 3.0);
   const Vec<double, 4> scale(errs, 1.0, errs, 1.0);
   kinematics.covariance = scale.asDiagonal() * kinematics.covariance * scale.asDiagonal();
   const Vec<double, 2> velocity_mps(kinematics.mean[1], kinematics.mean[3]);
-  const double unseen_m2s2 = kUnseen * kUnseen * velocity_mps.squaredNorm();
+  const Vec<double, 2> ahead_mps = kUnseenSpeed * velocity_mps;
+  const Vec<double, 2> abeam_mps =
+      kUnseenCourse_rad * Vec<double, 2>(-velocity_mps[1], velocity_mps[0]);
+  const Mat<double, 2, 2> unseen_m2s2 =
+      ahead_mps * ahead_mps.transpose() + abeam_mps * abeam_mps.transpose();
   for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 2; ++j) kinematics.covariance(2 * i, 2 * j) += stays_m2(i, j);
-    kinematics.covariance(2 * i + 1, 2 * i + 1) += unseen_m2s2;
+    for (int j = 0; j < 2; ++j) {
+      kinematics.covariance(2 * i, 2 * j) += stays_m2(i, j);
+      kinematics.covariance(2 * i + 1, 2 * j + 1) += unseen_m2s2(i, j);
+    }
   }
   return kinematics;
 }
