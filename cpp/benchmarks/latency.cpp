@@ -5,9 +5,10 @@
 // percentiles and the worst, and whether memory is asked for once it runs.
 //
 //     latency [association] [targets false_plots scans]...
-//     latency sectors
+//     latency sectors [targets false_plots farthest_m]
 //
-// The second prints the wait from a plot to its updated track where turns come in sectors.
+// The second prints the wait from a plot to its updated track where turns come in sectors, and the
+// processor time of a turn.
 //
 // with association `probabilistic` (unless told otherwise), `global_nearest` or `nearest`. Times
 // are by the wall clock and, less what other programs took of the processor, by that of the thread.
@@ -92,7 +93,7 @@ void measure(Association association, int targets, int false_plots, int scans) {
 
 /// Vessels that go to and fro around own ship, seen by an antenna of 24 turns a minute in sectors:
 /// the wait from a plot until its track is updated, and the time of a turn.
-void measure_sectors(int targets, int false_plots, int sectors, int turns) {
+void measure_sectors(int targets, int false_plots, double farthest_m, int sectors, int turns) {
   constexpr double kPeriod_s = 2.5, kTurn = Beam::kTurn;
   const Radar radar{.range_std_m = 8.0,
                     .bearing_std_rad = deg(0.5),
@@ -107,7 +108,7 @@ void measure_sectors(int targets, int false_plots, int sectors, int turns) {
   };
   std::vector<Vessel> vessels;
   for (int k = 0; k < targets; ++k)
-    vessels.push_back({20000.0 * std::sqrt(0.01 + uniform(random)), kTurn * uniform(random),
+    vessels.push_back({farthest_m * std::sqrt(0.01 + uniform(random)), kTurn * uniform(random),
                        8.0 * normal(random)});
   std::vector<double> wait_ms, turn_ms;
   std::map<std::int64_t, double> updated_s;
@@ -125,7 +126,7 @@ void measure_sectors(int targets, int false_plots, int sectors, int turns) {
         add(vessel.range_m + 100.0 * std::sin(vessel.speed_mps * turn * kPeriod_s / 100.0),
             vessel.bearing_rad);
     for (int k = 0; k < false_plots; ++k)
-      add(20000.0 * std::sqrt(uniform(random)), kTurn * uniform(random));
+      add(farthest_m * std::sqrt(uniform(random)), kTurn * uniform(random));
     double cpu_ms = 0.0;
     for (int sector = 0; sector < sectors; ++sector) {
       const double from_rad = kTurn * sector / sectors, to_rad = kTurn * (sector + 1) / sectors;
@@ -167,7 +168,11 @@ int main(int argc, char** argv) {
     if (name == "nearest") association = Association::kNearest;
   }
   if (argc > 1 && std::string_view(argv[1]) == "sectors") {
-    for (const int sectors : {1, 8, 16, 32, 64}) measure_sectors(1000, 500, sectors, 60);
+    const bool is_given = argc > 4;
+    for (const int sectors : {1, 8, 16, 32, 64})
+      measure_sectors(is_given ? std::max(std::atoi(argv[2]), 1) : 1000,
+                      is_given ? std::max(std::atoi(argv[3]), 0) : 500,
+                      is_given ? std::atof(argv[4]) : 20000.0, sectors, 60);
     return 0;
   }
   if (next == argc) {
