@@ -146,8 +146,9 @@ class PlaneIndex {
     std::array<std::int64_t, kFew> is_inside;
     const std::size_t size = points_.size(), filled = (size + kSide - 1) / kSide * kSide;
     for (std::size_t k = 0; k < filled; ++k)
-      is_inside[k] = (few_north_m_[k] >= south) & (few_north_m_[k] <= north) &
-                     (few_east_m_[k] >= west) & (few_east_m_[k] <= east);
+      is_inside[k] = std::int64_t{few_north_m_[k] >= south} &
+                     std::int64_t{few_north_m_[k] <= north} & std::int64_t{few_east_m_[k] >= west} &
+                     std::int64_t{few_east_m_[k] <= east};
     std::array<const Point*, kFew> found;
     std::ptrdiff_t count = 0;
     for (std::size_t k = 0; k < size; ++k) {
