@@ -169,10 +169,11 @@ int main(int argc, char** argv) {
   }
   if (argc > 1 && std::string_view(argv[1]) == "sectors") {
     const bool is_given = argc > 4;
+    const int targets = is_given ? std::max(std::atoi(argv[2]), 1) : 1000;
+    const int false_plots = is_given ? std::max(std::atoi(argv[3]), 0) : 500;
+    const double farthest_m = is_given ? std::atof(argv[4]) : 20000.0;
     for (const int sectors : {1, 8, 16, 32, 64})
-      measure_sectors(is_given ? std::max(std::atoi(argv[2]), 1) : 1000,
-                      is_given ? std::max(std::atoi(argv[3]), 0) : 500,
-                      is_given ? std::atof(argv[4]) : 20000.0, sectors, 60);
+      measure_sectors(targets, false_plots, farthest_m, sectors, 60);
     return 0;
   }
   if (next == argc) {

@@ -101,20 +101,24 @@ TEST(PlaneIndex, TheNearestOfAGridAreNear) {
 
 TEST(PlaneIndex, NothingIsNearWhatIsNoPlace) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const PlaneIndex index = index_of_points({{0.0, 0.0}, {1.0, 1.0}});
-  EXPECT_TRUE(found_nearest(index, {kNan, 0.0}, 10.0, 9).empty());
-  EXPECT_TRUE(found_nearest(index, {0.0, kNan}, 10.0, 9).empty());
-  EXPECT_TRUE(found_nearest(index, {0.0, 0.0}, kNan, 9).empty());
+  for (const std::size_t size : {2u, 100u}) {
+    const PlaneIndex index = index_of_points(std::vector<Place>(size, Place(1.0, 1.0)));
+    EXPECT_TRUE(found_nearest(index, {kNan, 0.0}, 10.0, 9).empty());
+    EXPECT_TRUE(found_nearest(index, {0.0, kNan}, 10.0, 9).empty());
+    EXPECT_TRUE(found_nearest(index, {0.0, 0.0}, kNan, 9).empty());
+  }
 }
 
 TEST(PlaneIndex, ForgetsWhenCleared) {
-  PlaneIndex index(2);
-  index.add({0.0, 0.0}, 0);
-  index.sort();
-  index.clear();
-  index.sort();
-  EXPECT_TRUE(found_nearest(index, {0.0, 0.0}, 1.0).empty());
-  EXPECT_TRUE(index.empty());
+  for (const int size : {1, 100}) {
+    PlaneIndex index(size);
+    for (int k = 0; k < size; ++k) index.add({0.0, 0.0}, k);
+    index.sort();
+    index.clear();
+    index.sort();
+    EXPECT_TRUE(found_nearest(index, {0.0, 0.0}, 1.0).empty());
+    EXPECT_TRUE(index.empty());
+  }
 }
 
 }  // namespace

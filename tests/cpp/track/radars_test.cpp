@@ -230,6 +230,23 @@ TEST(Radars, AHiddenTargetIsShownForAsLongAsTheSlowestRadarAloneShowsIt) {
   EXPECT_EQ(shown(both), 0);
 }
 
+TEST(Radars, OneThatHasNotBegunDoesNotCountMisses) {
+  Radar slow = kFine;
+  slow.period_s = 60.0;
+  const std::vector<Boat> boats = fleet(8, 9);
+  VesselTracker alone = tracker_of({kFine}), both = tracker_of({kFine, slow});
+  for (VesselTracker* tracker : {&alone, &both}) {
+    watch(*tracker, {{0, kFine}}, boats, 0.0, 40.0, 9, nothing);
+    watch(*tracker, {{0, kFine}}, {}, 40.0, 40.0 + 3 * kFine.period_s, 9, nothing);
+  }
+  const std::vector<const Track*> expected = tracks_of(alone, true), tracks = tracks_of(both, true);
+  ASSERT_EQ(tracks.size(), expected.size());
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    EXPECT_GE(tracks[k]->misses, 2);
+    EXPECT_EQ(tracks[k]->misses, expected[k]->misses);
+  }
+}
+
 TEST(Radars, PlotsOfCorrelatedErrorsCountForAsManyAsTheyAreWorth) {
   Radar correlated = kFine;
   correlated.correlation_time_s = 5.0;

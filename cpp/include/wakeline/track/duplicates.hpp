@@ -95,7 +95,8 @@ class Duplicates {
   }
 
  private:
-  /// The narrowest strips about some positions: along two bearings, and across the middle one.
+  /// The narrowest strips about some positions: along two bearings, and across the middle one, of
+  /// which the opposite makes the same strip.
   class Outline {
    public:
     Outline(double from_rad, double to_rad) noexcept {

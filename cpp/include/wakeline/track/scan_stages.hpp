@@ -646,10 +646,9 @@ class ScanStages {
   }
 
   void delete_duplicates(const Sector* sector) noexcept {
+    // Of a whole turn any two bearings do.
     const double from_rad = sector == nullptr ? 0.0 : sector->from_rad;
-    const double to_rad =
-        from_rad +
-        (sector == nullptr ? kPi<double> / 2 : Beam::width_rad(from_rad, sector->to_rad));
+    const double to_rad = sector == nullptr ? kPi<double> / 2 : sector->to_rad;
     for (const int slot :
          duplicates_.find(picture_.tracks, due_, picture_.longest_period_s(), from_rad, to_rad))
       lose(picture_.tracks.at(slot), LossReason::kDuplicate);
