@@ -406,8 +406,9 @@ class ScanStages {
     track.kinematics = step.kinematics;
   }
 
-  /// Has the plots wait that may be of a track which waits, or ahead of the beam, and lists the
-  /// tracks that wait and have a plot near them that is a candidate of one that is due.
+  /// Has the plots of the last turn wait that may be of a track which waits, or ahead of the beam,
+  /// and lists the tracks that wait and have a plot near them that is a candidate of one that is
+  /// due.
   void list_rivals() noexcept {
     rivals_.clear();
     if (!waiting_.empty()) {
@@ -416,11 +417,12 @@ class ScanStages {
         for (const CandidatePlot& plot : candidates_of(picture_.tracks.at(slot)))
           is_candidate_[static_cast<std::size_t>(plot.plot)] = 1;
     }
+    const double turn_ago_rad = state().beam.angle_rad() - Beam::kTurn;
     for (const int slot : waiting_) {
       const Track& track = picture_.tracks.at(slot);
       bool is_rival = false;
       for_each_in_reach(track, [&](int plot) {
-        state().plots.keep(plot);
+        if (state().plots[plot].beam_rad > turn_ago_rad) state().plots.keep(plot);
         is_rival = is_rival ||
                    (is_candidate_[static_cast<std::size_t>(plot)] != 0 && is_near(track, plot));
       });
