@@ -41,10 +41,12 @@ class ClutterDensity {
   /// do not make the next one of the same target clutter.
   [[nodiscard]] double without(const LearnedPlots& own, const ScanPlots& plots,
                                int plot) const noexcept {
+    const double of_range = rings_.density(plots[plot].range_m);
+    const double mapped = mapped_per_m2_[static_cast<std::size_t>(plot)];
+    if (mapped <= of_range) return of_range;
     const double of_own =
         map_weight_ * map_.density_of(own, plots[plot].position.mean, learned_s_, period_s_);
-    return std::max(mapped_per_m2_[static_cast<std::size_t>(plot)] - of_own,
-                    rings_.density(plots[plot].range_m));
+    return std::max(mapped - of_own, of_range);
   }
 
   /// Learns by range, with the probability of each plot that no target owns it; `turns` of the

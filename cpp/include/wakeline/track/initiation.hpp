@@ -218,9 +218,8 @@ class TrackInitiation {
                              dt_s * dt_s * prior_velocity(radar).covariance);
     if (!factor.ok()) return 0.0;
     const Vec<double, 2> way = later.position.mean - earlier.position.mean;
-    const double likelihood =
-        std::exp(-0.5 * (factor.squared_norm(way) + factor.log_determinant())) /
-        (2.0 * std::numbers::pi);
+    const double likelihood = std::exp(-0.5 * factor.squared_norm(way)) *
+                              factor.inverse_root_determinant() / (2.0 * std::numbers::pi);
     const double missed = std::max(std::round(dt_s / radar.period_s) - 1.0, 0.0);
     const double miss = 1.0 - detection_probability;
     const double all_missed = missed == 0.0 ? 1.0 : missed == 1.0 ? miss : std::pow(miss, missed);

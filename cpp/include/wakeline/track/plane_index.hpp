@@ -77,6 +77,11 @@ class PlaneIndex {
     if (south_m_.front() > north || north_m_ < south || west_m_ - position[1] > reach_m ||
         position[1] - east_m_ > reach_m)
       return;
+    std::array<int, kFew> found;
+    if (const std::ptrdiff_t count = look_in_square(position, reach_m, found); count <= most) {
+      for (std::ptrdiff_t k = 0; k < count; ++k) function(found[at(k)]);
+      return;
+    }
     std::ptrdiff_t up =
         first_not_below(south_m_.begin(), strips, position[0], [](double m) { return m; }) -
         south_m_.begin();
@@ -164,6 +169,30 @@ class PlaneIndex {
       count = most;
     }
     for (std::ptrdiff_t k = 0; k < count; ++k) function(found[at(k)]->name);
+  }
+
+  /// Lists the names of the points in a square and returns how many there are, or a number above
+  /// all where there are too many.
+  std::ptrdiff_t look_in_square(const Vec<double, 2>& position, double reach_m,
+                                std::array<int, kFew>& names) const noexcept {
+    const double south = position[0] - reach_m, north = position[0] + reach_m;
+    const double west = position[1] - reach_m, east = position[1] + reach_m;
+    const std::ptrdiff_t strips = std::ssize(south_m_);
+    const auto first_inside =
+        first_not_below(south_m_.begin(), strips, south, [](double m) { return m; });
+    std::ptrdiff_t strip = std::max(first_inside - south_m_.begin() - 1, std::ptrdiff_t{0});
+    std::ptrdiff_t count = 0;
+    for (; strip < strips && south_m_[at(strip)] <= north; ++strip) {
+      const auto end = points_.begin() + strip_end(strip);
+      const auto begin = points_.begin() + strip * per_strip_;
+      auto point = first_not_below(begin, end - begin, west, [](const Point& p) { return p.east; });
+      for (; point != end && point->east <= east; ++point) {
+        if (count == std::ssize(names)) return std::numeric_limits<std::ptrdiff_t>::max();
+        names[at(count)] = point->name;
+        count += std::ptrdiff_t{point->north >= south} & std::ptrdiff_t{point->north <= north};
+      }
+    }
+    return count;
   }
 
   /// Calls `f(point)` for the points of a strip within reach, from the nearest to an east outwards,
