@@ -26,11 +26,12 @@ void define_strobe_tracker(py::module_& track);  // strobe_tracker.cpp
 namespace {
 
 template <std::size_t Index>
-using VesselFilter = std::decay_t<decltype(std::declval<const VesselImm&>().filter<Index>())>;
+using VesselFilter = std::decay_t<decltype(std::declval<const VesselImm::All&>().filter<Index>())>;
 using VesselModes = std::make_index_sequence<VesselImm::kModels>;
 
 /// The same over filters composed at run time.
-PyEstimator<AnyImm> as_any_imm(const VesselImm& imm) {
+PyEstimator<AnyImm> as_any_imm(const VesselImm& vessel) {
+  const VesselImm::All& imm = vessel.all();
   const auto filters = [&]<std::size_t... Index>(std::index_sequence<Index...>) {
     return std::vector{AnyFilter(imm.filter<Index>())...};
   };
@@ -46,15 +47,15 @@ PyEstimator<AnyImm> any_vessel_imm(const Radar& radar, const VesselModels& model
 
 /// The reverse, of an estimator that is made like it.
 std::optional<VesselImm> as_vessel_imm(const AnyImm& any) {
-  if (any.bank().size() != VesselImm::kModels) return std::nullopt;
+  if (any.bank().size() != VesselImm::kModels || !any.chain().continuous()) return std::nullopt;
   return [&]<std::size_t... Index>(std::index_sequence<Index...>)->std::optional<VesselImm> {
     const std::tuple filters(
         std::get_if<VesselFilter<Index>>(&any.bank().filter(int(Index)).variant())...);
     if (((std::get<Index>(filters) == nullptr) || ...)) return std::nullopt;
-    VesselImm imm(ModeChain<VesselImm::kModels>(any.chain()),
-                  VesselFilter<Index>(std::get<Index>(filters)->motion())...);
+    VesselImm::All imm(ModeChain<VesselImm::kModels>(any.chain()),
+                       VesselFilter<Index>(std::get<Index>(filters)->motion())...);
     imm.set_initial_mode_probability(any.initial_mode_probability());
-    return imm;
+    return VesselImm(imm);
   }
   (VesselModes{});
 }

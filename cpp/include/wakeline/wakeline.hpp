@@ -109,6 +109,7 @@
 #include "wakeline/multimodel/mixture.hpp"
 #include "wakeline/multimodel/mode_chain.hpp"
 #include "wakeline/multimodel/mode_history.hpp"
+#include "wakeline/multimodel/model_group_imm.hpp"
 #include "wakeline/multimodel/switching_grid_imm.hpp"
 #include "wakeline/multimodel/turn_grid_imm.hpp"
 #include "wakeline/multimodel/turn_rate_grid.hpp"

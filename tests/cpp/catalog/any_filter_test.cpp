@@ -100,7 +100,7 @@ TEST(AnyFilterBank, EqualsTheTrackersEstimatorBitForBit) {
                      AnyFilter(Ekf(models.starboard_turn()))}));
   composed.set_initial_mode_probability(
       ModeVector<double, kRuntimeModes>(models.initial_mode_probability()));
-  expect_same_bits(vessel_imm(radar, models), composed,
+  expect_same_bits(vessel_imm(radar, models).all(), composed,
                    ConvertedRangeBearing{.range_std_m = 20.0, .bearing_std_rad = deg(0.5)});
 }
 

@@ -158,6 +158,15 @@ class Imm {
     return select(possible, total, Scalar(0));
   }
 
+  /// Starts with these mode probabilities, each filter as `assign_filter(Index<mode>, filter)`
+  /// leaves it.
+  template <class Assign>
+  void assign(const Probability& probability, const Assign& assign_filter) noexcept {
+    probability_ = probability;
+    started_ = true;
+    unroll<kModels>([&](auto mode) { assign_filter(mode, bank_.template get<mode.value>()); });
+  }
+
   /// Copies the states of scalar estimators over the same models, all started, into the lanes: lane
   /// k from `of_lane(k)`.
   template <class OfLane>

@@ -122,6 +122,16 @@ class ModeChain {
     return ModeChain(matrix);
   }
 
+  /// The chain of the first `Count` modes: transitions to the others are left out.
+  template <int Count>
+  requires(K != kRuntimeModes && Count < K) [[nodiscard]] ModeChain<Count> first() const {
+    typename ModeChain<Count>::Matrix matrix = matrix_.template topLeftCorner<Count, Count>();
+    matrix.diagonal().setZero();
+    for (Eigen::Index i = 0; i < Count; ++i)
+      matrix(i, i) = (continuous_ ? 0.0 : 1.0) - matrix.row(i).sum();
+    return ModeChain<Count>(matrix, continuous_);
+  }
+
   [[nodiscard]] Eigen::Index modes() const noexcept { return matrix_.rows(); }
 
   /// True when the transition depends on the time step.
@@ -174,6 +184,8 @@ class ModeChain {
   explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {
     if (!matrix_.allFinite()) reject("every rate of the generator of a mode chain must be finite");
   }
+
+  ModeChain(const Matrix& matrix, bool continuous) : matrix_(matrix), continuous_(continuous) {}
 
   /// Throws unless there are K modes, or 1 to kMaxModes.
   static void require_modes(const std::string& what, Eigen::Index count) {

@@ -15,6 +15,7 @@
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/fix.hpp"
 #include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/model_group_imm.hpp"
 #include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/pack_math.hpp"
 
@@ -27,6 +28,18 @@ struct PredictionStep {
   double dt_s;
   Status status = Status::kOk;
   Gaussian<4> kinematics = {};  ///< of the estimate after the step
+
+  /// The same step of another estimator.
+  template <class Other>
+  [[nodiscard]] PredictionStep<Other> of(Other& other) const noexcept {
+    return {&other, dt_s};
+  }
+  /// Takes the result of the same step of another estimator.
+  template <class Other>
+  void take_result(const PredictionStep<Other>& step) noexcept {
+    status = step.status;
+    kinematics = step.kinematics;
+  }
 };
 
 /// One update of an estimator by one or more fixes that may belong to its target, and its result;
@@ -39,6 +52,17 @@ struct UpdateStep {
   std::span<double> share;
   double total = 0.0;
   Gaussian<4> kinematics = {};
+
+  /// As those of `PredictionStep`.
+  template <class Other>
+  [[nodiscard]] UpdateStep<Other> of(Other& other) const noexcept {
+    return {&other, fixes, none, share};
+  }
+  template <class Other>
+  void take_result(const UpdateStep<Other>& step) noexcept {
+    total = step.total;
+    kinematics = step.kinematics;
+  }
 };
 
 /// Takes steps of many estimators with the parameters of one prototype.
@@ -244,6 +268,60 @@ class SideBySide<Estimator> {
 
   decltype(InLanes<Estimator, Scalar>::of(std::declval<const Estimator&>())) lanes_;
   std::array<Alternative<LaneFix, Scalar>, kMaxAlternatives> fixes_;
+};
+
+/// Performs the steps apart: of those whose group rests, and of those whose group has joined.
+template <class CoreBank, class AllBank>
+class SideBySide<ModelGroupImm<CoreBank, AllBank>> {
+  using Estimator = ModelGroupImm<CoreBank, AllBank>;
+
+ public:
+  explicit SideBySide(const Estimator& prototype)
+      : core_(prototype.core()), all_(prototype.all()) {}
+
+  void predict(std::span<PredictionStep<Estimator>> steps) noexcept {
+    for (const auto& step : steps) step.estimator->choose_models(step.dt_s);
+    apart(steps, [](auto& side_by_side, auto some) { side_by_side.predict(some); });
+  }
+
+  void update(std::span<UpdateStep<Estimator>> steps) noexcept {
+    apart(steps, [](auto& side_by_side, auto some) { side_by_side.update(some); });
+  }
+
+ private:
+  static constexpr std::size_t kTogether = 64;  ///< steps that are sorted together
+
+  template <class Step, class Perform>
+  void apart(std::span<Step> steps, const Perform& perform) noexcept {
+    while (!steps.empty()) {
+      const std::span<Step> some = steps.first(std::min(kTogether, steps.size()));
+      perform_some(core_, some, perform,
+                   [](Estimator& one) { return one.joined() ? nullptr : &one.core(); });
+      perform_some(all_, some, perform,
+                   [](Estimator& one) { return one.joined() ? &one.all() : nullptr; });
+      steps = steps.subspan(some.size());
+    }
+  }
+
+  /// Performs the steps of the estimators of which `imm_of` has something.
+  template <class Imm, class Step, class Perform, class ImmOf>
+  static void perform_some(SideBySide<Imm>& side_by_side, std::span<Step> steps,
+                           const Perform& perform, const ImmOf& imm_of) noexcept {
+    std::array<decltype(steps[0].of(std::declval<Imm&>())), kTogether> some;
+    std::array<Step*, kTogether> step_of;
+    std::size_t count = 0;
+    for (Step& step : steps) {
+      Imm* const imm = imm_of(*step.estimator);
+      if (imm == nullptr) continue;
+      step_of[count] = &step;
+      some[count++] = step.of(*imm);
+    }
+    perform(side_by_side, std::span(some.data(), count));
+    for (std::size_t k = 0; k < count; ++k) step_of[k]->take_result(some[k]);
+  }
+
+  SideBySide<typename Estimator::Core> core_;
+  SideBySide<typename Estimator::All> all_;
 };
 
 }  // namespace wakeline

@@ -68,8 +68,9 @@ class ModePositions {
     count_ = 0;
     evidence_ = nullptr;
     if constexpr (requires { estimator.mode_probability(); }) {
+      const auto& probability = estimator.mode_probability();
       const auto add = [&](int mode, const auto& belief) {
-        if (count_ < kMost) put(count_, position_of(belief), estimator.mode_probability()[mode]);
+        if (count_ < kMost) put(count_, position_of(belief), probability[mode]);
         ++count_;
       };
       if constexpr (requires { estimator.for_each_mode(add); }) estimator.for_each_mode(add);

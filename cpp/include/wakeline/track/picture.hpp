@@ -38,11 +38,12 @@ struct Picture {
   static constexpr double kSurelyExists = 0.999;       ///< a target that was designated or reports
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 17;
+  static constexpr std::uint32_t kArchiveVersion = 18;
 
   Picture(std::span<const Radar> of, const TrackerConfig& with, const Estimator& made_of)
       : config(validated(with)),
         prototype(made_of),
+        started_as(made_of),
         steps(made_of),
         identities(2 * config.max_tracks),
         tracks(config.max_tracks),
@@ -58,6 +59,7 @@ struct Picture {
 
   TrackerConfig config;
   Estimator prototype;
+  Estimator started_as;  ///< the last one that a track has started with
   Steps steps;
   std::vector<RadarState> radars;  ///< by number
   int at_hand = 0;                 ///< number of the radar of this call
@@ -212,8 +214,7 @@ struct Picture {
 
   /// A new tentative track, for which there is room; null when its estimator cannot start.
   Track* open(const TrackStart& start) noexcept {
-    Estimator estimator = prototype;
-    if (estimator.start(start.belief) != Status::kOk) return nullptr;
+    if (started_as.start(start.belief) != Status::kOk) return nullptr;
     if (tracks.full()) {
       const int weakest = room.make_room();
       if (!is_new(tracks.at(weakest)))
@@ -221,7 +222,7 @@ struct Picture {
       tracks.vacate(weakest);
     }
     Track& track = tracks.open();
-    estimator_at(track.slot) = estimator;
+    copy_state(started_as, estimator_at(track.slot));
     track.id = track.tentative_id = track.birth = next_tentative_id--;
     track.time_s = start.time_s;
     track.looked_s = scan_time_s;
@@ -298,13 +299,8 @@ struct Picture {
     next_tentative_id = other.next_tentative_id;
     identities = other.identities;
     tracks.copy_from(other.tracks);
-    tracks.for_each_slot([&](int slot) {
-      const Estimator& from = other.estimator_of(slot);
-      if constexpr (requires { InLanes<Estimator, double>::of(from); })
-        estimator_at(slot).gather([&](int) -> const Estimator& { return from; });
-      else
-        estimator_at(slot) = from;
-    });
+    tracks.for_each_slot(
+        [&](int slot) { copy_state(other.estimator_of(slot), estimator_at(slot)); });
   }
 
   /// Saves or restores; the settings are compared, not restored.
@@ -334,6 +330,14 @@ struct Picture {
   }
 
  private:
+  /// Of an estimator with the same parameters; where it can, without these.
+  static void copy_state(const Estimator& from, Estimator& to) noexcept {
+    if constexpr (requires { to.copy_state_from(from); })
+      to.copy_state_from(from);
+    else
+      to = from;
+  }
+
   static constexpr std::array<double, kMostPartialSensors> never() noexcept {
     std::array<double, kMostPartialSensors> times{};
     times.fill(-std::numeric_limits<double>::infinity());

@@ -5,7 +5,7 @@
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 #include "wakeline/motion/wandering_course.hpp"
-#include "wakeline/multimodel/imm.hpp"
+#include "wakeline/multimodel/model_group_imm.hpp"
 #include "wakeline/track/radar.hpp"
 
 namespace wakeline {
@@ -42,7 +42,7 @@ struct VesselModels {
   double weaving_psd_m2s3 = 0.1;
   double agile_turn_psd_m2s3 = 1.2;
   double agile_turn_rate_rad_s = 0.13;
-  double agile_probability = 0.015;
+  double agile_probability = 0.05;
   double agile_time_s = 1000.0;
   double weaving_sojourn_s = 10.0;
   double agile_turn_sojourn_s = 5.0;
@@ -202,10 +202,13 @@ struct VesselModels {
   }
 };
 
-/// The estimator made of them.
-using VesselImm = Imm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<WanderingCourse>,
-                                 Ekf<CoordinatedTurnRate>, Ekf<WanderingCourse>,
-                                 Ekf<CoordinatedTurn>, Ekf<CoordinatedTurn>>>;
+/// The estimator made of them, of which the agile ones rest while a vessel cruises.
+using VesselImm =
+    ModelGroupImm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<WanderingCourse>,
+                             Ekf<CoordinatedTurnRate>>,
+                  FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<WanderingCourse>,
+                             Ekf<CoordinatedTurnRate>, Ekf<WanderingCourse>, Ekf<CoordinatedTurn>,
+                             Ekf<CoordinatedTurn>>>;
 
 /// The estimator of a tracker for this radar. Throws `std::invalid_argument` on a setting that
 /// makes no sense.
@@ -216,12 +219,12 @@ inline VesselImm vessel_imm(const Radar& radar, const VesselModels& models = {})
   radar.validate();
   models.validate();
   const double max_speed_mps = radar.max_speed_mps;
-  VesselImm imm(models.chain(), Ekf(models.cruising(max_speed_mps)),
-                Ekf(models.steady(max_speed_mps)), Ekf(models.restless(max_speed_mps)),
-                Ekf(models.turning(max_speed_mps)), Ekf(models.weaving(max_speed_mps)),
-                Ekf(models.port_turn()), Ekf(models.starboard_turn()));
+  VesselImm::All imm(models.chain(), Ekf(models.cruising(max_speed_mps)),
+                     Ekf(models.steady(max_speed_mps)), Ekf(models.restless(max_speed_mps)),
+                     Ekf(models.turning(max_speed_mps)), Ekf(models.weaving(max_speed_mps)),
+                     Ekf(models.port_turn()), Ekf(models.starboard_turn()));
   imm.set_initial_mode_probability(models.initial_mode_probability());
-  return imm;
+  return VesselImm(imm);
 }
 #endif
 
