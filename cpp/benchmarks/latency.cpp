@@ -7,11 +7,10 @@
 //     latency [association] [targets false_plots scans]...
 //     latency sectors [targets false_plots farthest_m]
 //
-// The second prints the wait from a plot to its updated track where turns come in sectors, and the
-// processor time of a turn.
-//
-// with association `probabilistic` (unless told otherwise), `global_nearest` or `nearest`. Times
-// are by the wall clock and, less what other programs took of the processor, by that of the thread.
+// The first has association `probabilistic` (unless another is named), `global_nearest` or
+// `nearest`. Times are by the wall clock and, less what other programs took of the processor, by
+// that of the thread. The second prints the wait from a plot to its updated track where turns come
+// in sectors, and the processor time of a turn.
 
 #include <sys/resource.h>
 #include <time.h>
@@ -21,6 +20,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <random>
 #include <string_view>
 #include <vector>
@@ -91,8 +91,9 @@ void measure(Association association, int targets, int false_plots, int scans) {
   print_percentiles("thread", thread_ms);
 }
 
-/// Vessels that go to and fro around own ship, seen by an antenna of 24 turns a minute in sectors:
-/// the wait from a plot until its track is updated, and the time of a turn.
+/// Vessels around own ship, of which nine of ten go straight and the others to and fro, seen by an
+/// antenna of 24 turns a minute in sectors: the wait from a plot until its track is updated, and
+/// the time of a turn.
 void measure_sectors(int targets, int false_plots, double farthest_m, int sectors, int turns) {
   constexpr double kPeriod_s = 2.5, kTurn = Beam::kTurn;
   const Radar radar{.range_std_m = 8.0,
@@ -104,12 +105,23 @@ void measure_sectors(int targets, int false_plots, double farthest_m, int sector
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   struct Vessel {
-    double range_m, bearing_rad, speed_mps;
+    Vec<double, 2> start_m, heading;
+    double speed_mps;
+    bool returns;
+
+    [[nodiscard]] Vec<double, 2> at(double time_s) const {
+      constexpr double kFarthest_m = 100.0;
+      const double way_m = speed_mps * time_s;
+      return start_m + heading * (returns ? kFarthest_m * std::sin(way_m / kFarthest_m) : way_m);
+    }
   };
+  const auto towards = [](double rad) { return Vec<double, 2>(std::cos(rad), std::sin(rad)); };
   std::vector<Vessel> vessels;
-  for (int k = 0; k < targets; ++k)
-    vessels.push_back({farthest_m * std::sqrt(0.01 + uniform(random)), kTurn * uniform(random),
-                       8.0 * normal(random)});
+  for (int k = 0; k < targets; ++k) {
+    const double range_m = farthest_m * std::sqrt(0.01 + uniform(random));
+    vessels.push_back({range_m * towards(kTurn * uniform(random)), towards(kTurn * uniform(random)),
+                       8.0 * std::abs(normal(random)), k % 10 == 9});
+  }
   std::vector<double> wait_ms, turn_ms;
   std::map<std::int64_t, double> updated_s;
   std::vector<Plot> plots, seen;
@@ -121,10 +133,10 @@ void measure_sectors(int targets, int false_plots, double farthest_m, int sector
                        bearing_rad + radar.bearing_std_rad * normal(random),
                        {}});
     };
-    for (const Vessel& vessel : vessels)
-      if (uniform(random) < 0.9)
-        add(vessel.range_m + 100.0 * std::sin(vessel.speed_mps * turn * kPeriod_s / 100.0),
-            vessel.bearing_rad);
+    for (const Vessel& vessel : vessels) {
+      const Vec<double, 2> position_m = vessel.at(turn * kPeriod_s);
+      if (uniform(random) < 0.9) add(position_m.norm(), std::atan2(position_m[1], position_m[0]));
+    }
     for (int k = 0; k < false_plots; ++k)
       add(farthest_m * std::sqrt(uniform(random)), kTurn * uniform(random));
     double cpu_ms = 0.0;
@@ -155,6 +167,8 @@ void measure_sectors(int targets, int false_plots, double farthest_m, int sector
   std::printf("  %-7s %9s %9s %9s %9s %9s\n", "ms", "least", "median", "99 %", "99.9 %", "worst");
   print_percentiles("wait", wait_ms);
   print_percentiles("turn", turn_ms);
+  std::printf("  %-7s %9.3f\n", "mean",
+              std::accumulate(turn_ms.begin(), turn_ms.end(), 0.0) / double(turn_ms.size()));
 }
 
 }  // namespace
