@@ -287,6 +287,27 @@ TEST(Sectors, ATargetWhoseGateReachesTheAntennaIsUpdatedAndMissesOnceATurn) {
   }
 }
 
+TEST(Sectors, VesselsAllAroundOwnShipAreShownOnceEach) {
+  std::vector<Boat> crowd;
+  for (int k = 0; k < 24; ++k)
+    crowd.push_back({(60.0 + 40.0 * (k % 5)) *
+                         Vec<double, 2>(std::cos(kTurn * k / 24.0), std::sin(kTurn * k / 24.0)),
+                     {0.0, 0.0}});
+  const Antenna antenna;
+  constexpr int kTurns = 20;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    VesselTracker tracker = make_tracker();
+    int sectors = 0;
+    feed(tracker, record(crowd, antenna, kTurn * kTurns, seed), antenna, even_ends(32, kTurns),
+         [&](const ScanReport&, std::span<const Plot>) {
+           if (++sectors < 32 * 12) return;
+           EXPECT_LE(tracker.size(), 36) << "seed " << seed << ", sector " << sectors;
+         });
+    EXPECT_EQ(tracker.size(), 24);
+    tracker.for_each([](const Track& track) { EXPECT_TRUE(track.shown()); });
+  }
+}
+
 TEST(Sectors, ATargetInABlindSectorCoastsByTimeAndOthersAreUpdated) {
   VesselTracker tracker = make_tracker();
   const std::vector<Boat> two{boats()[2], boats()[3]};  // bearings of about 150 and 83 degrees
