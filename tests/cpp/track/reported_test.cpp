@@ -84,7 +84,7 @@ TEST(Reported, AddsWhatStaysAndAnAlterationThatDoesNotShow) {
   const Gaussian<4> belief{{100.0, 6.0, -50.0, 8.0}, draw.definite<4>()};
   Mat<double, 2, 2> stays;
   stays << 9.0, 2.0, 2.0, 4.0;
-  const Gaussian<4> found = reported(belief, 1.0, 100, stays);
+  const Gaussian<4> found = reported(belief, 1.0, 1.0, 100, stays);
   EXPECT_EQ(found.mean, belief.mean);
   const Mat<double, 4, 4> more = found.covariance - belief.covariance;
   const Vec<double, 4> ahead(0.0, 0.6, 0.0, 0.8), abeam(0.0, -0.8, 0.0, 0.6);
@@ -126,12 +126,23 @@ TEST(Reported, IsTheErrorOfAFilterWhoseNoiseDoesNotCome) {
     const SettledFilter filter(psd);
     Gaussian<4> belief{Vec<double, 4>::Zero(), Mat<double, 4, 4>::Identity()};
     belief.covariance(0, 0) = belief.covariance(2, 2) = filter.variance;
-    const Gaussian<4> found = reported(belief, filter.gain, 2000, Mat<double, 2, 2>::Zero());
+    const Gaussian<4> found =
+        reported(belief, filter.variance, filter.gain, 2000, Mat<double, 2, 2>::Zero());
     const double ratio = found.covariance(0, 0) / filter.error_variance;
     EXPECT_GE(ratio, 1.0) << filter.gain;
     EXPECT_LT(ratio, filter.gain < 0.05 ? 1.2 : 1.5) << filter.gain;
     EXPECT_EQ(found.covariance(0, 0), found.covariance(2, 2));
   }
+}
+
+TEST(Reported, LeavesOutNothingOfWhatAPredictionAdds) {
+  const Mat<double, 2, 2> none = Mat<double, 2, 2>::Zero();
+  const Gaussian<4> estimate{Vec<double, 4>::Zero(), 4.0 * Mat<double, 4, 4>::Identity()};
+  Gaussian<4> later = estimate;
+  later.covariance(0, 0) = later.covariance(2, 2) = 25.0;
+  const double left_out = 4.0 - reported(estimate, 4.0, 0.01, 2000, none).covariance(0, 0);
+  EXPECT_GT(left_out, 1.0);
+  EXPECT_NEAR(25.0 - reported(later, 4.0, 0.01, 2000, none).covariance(0, 0), left_out, 1e-12);
 }
 
 TEST(GainOfATrack, IsTheWeightOfAPlotWhereOneRadarSeesIt) {
@@ -147,7 +158,8 @@ TEST(Reported, KeepsTheCovarianceOfAPlot) {
   Draw draw(8);
   const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
   for (const double gain : {1.0, 1.7})
-    EXPECT_EQ(reported(belief, gain, 100, Mat<double, 2, 2>::Zero()).covariance, belief.covariance);
+    EXPECT_EQ(reported(belief, 1.0, gain, 100, Mat<double, 2, 2>::Zero()).covariance,
+              belief.covariance);
 }
 
 // A line through all plots since the start, however small its gain: no noise was allowed for.
@@ -156,7 +168,7 @@ TEST(Reported, KeepsTheCovarianceOfALineThroughAllPlots) {
   const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
   for (const int plots : {5, 40, 400}) {
     const double gain = 2.0 * (2 * plots - 1) / (plots * (plots + 1.0));
-    EXPECT_EQ(reported(belief, gain, plots, Mat<double, 2, 2>::Zero()).covariance,
+    EXPECT_EQ(reported(belief, 1.0, gain, plots, Mat<double, 2, 2>::Zero()).covariance,
               belief.covariance);
   }
 }

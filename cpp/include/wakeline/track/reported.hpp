@@ -81,16 +81,18 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
 ///   thirds of its variance (three quarters without maneuvers, the small-gain limit of an
 ///   alpha-beta filter, and a tenth less without outliers). The rest is left out as far as plots
 ///   older than eight scans count, (1 - gain)⁸, and the first of its `hits` plots no longer do: a
-///   line through n plots has the gain 4/n with neither noise nor outliers.
+///   line through n plots has the gain 4/n with neither noise nor outliers. Of a belief ahead of
+///   the track, whose own position has the variance `estimate_m2`, what the way adds stays.
 /// - An alteration that does not show yet: of the course by `kUnseenCourse_rad`, of the speed by
 ///   `kUnseenSpeed` of it.
 /// - The errors of the position that stay from scan to scan.
-inline Gaussian<4> reported(Gaussian<4> kinematics, double gain, int hits,
+inline Gaussian<4> reported(Gaussian<4> kinematics, double estimate_m2, double gain, int hits,
                             const Mat<double, 2, 2>& stays_m2) noexcept {
   constexpr double kUnseenCourse_rad = 0.06, kUnseenSpeed = 0.02;
   const double of_a_line = std::min(4.0 / (hits * gain), 1.0);
   const double held = std::pow(std::max(1.0 - gain, 0.0), 8) * (1.0 - std::pow(of_a_line, 8));
-  const double errs = std::sqrt(1.0 - held / 3.0);
+  const double now_m2 = (kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2;
+  const double errs = std::sqrt(1.0 - held / 3.0 * std::min(estimate_m2 / now_m2, 1.0));
   const Vec<double, 4> scale(errs, 1.0, errs, 1.0);
   kinematics.covariance = scale.asDiagonal() * kinematics.covariance * scale.asDiagonal();
   const Vec<double, 2> velocity_mps(kinematics.mean[1], kinematics.mean[3]);

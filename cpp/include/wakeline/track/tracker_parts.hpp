@@ -184,8 +184,8 @@ double Tracker<Estimator, Steps>::latest_time_s() const noexcept {
 template <class Estimator, class Steps>
 Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
                                                      double time_s) const noexcept {
-  return reported(parts_->picture.belief_at(track, time_s), track.gain(), track.hits,
-                  track.stays_m2);
+  return reported(parts_->picture.belief_at(track, time_s), track.position_variance_m2(),
+                  track.gain(), track.hits, track.stays_m2);
 }
 
 template <class Estimator, class Steps>
