@@ -130,7 +130,7 @@ if ! "$python" -m pip --version >/dev/null 2>&1; then
   "$system_python" -m venv "$root/build/venv"
 fi
 
-# A package for tests has all that the demo needs. Both have lanes for this machine's processor alone.
+# A package for tests has all that the demo needs. Both are for this machine's processor alone.
 if [[ $purpose == demo ]]; then extra=plot; else extra=dev; fi
 fingerprint=$(
   cd "$root"
@@ -139,6 +139,7 @@ fingerprint=$(
       -type f ! -name '*.pyc' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum
     "$python" --version
     "$CXX" --version
+    grep -m 1 '^flags' /proc/cpuinfo || true
   } | sha256sum
 )
 stamp_of() { echo "$root/build/venv/wakeline-$1.stamp"; }

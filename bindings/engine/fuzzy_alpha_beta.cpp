@@ -16,7 +16,7 @@ using PyFuzzy = PyEstimator<Fuzzy>;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-py::array_t<double> to_array(std::span<const double> values) {
+py::array_t<double> array_of(std::span<const double> values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
@@ -189,12 +189,12 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
                              "first one.")
       .def_property_readonly(
           "residual_ratios",
-          [](const PyFuzzy& estimator) { return to_array(estimator.get().residual_ratios()); },
+          [](const PyFuzzy& estimator) { return array_of(estimator.get().residual_ratios()); },
           "For each line at the last plot: its residual / `sigma_hat_m`, "
           "clipped.")
       .def_property_readonly(
           "rule_strengths",
-          [](const PyFuzzy& estimator) { return to_array(estimator.get().rule_strengths()); },
+          [](const PyFuzzy& estimator) { return array_of(estimator.get().rule_strengths()); },
           "Strength of each rule.")
       .def_property_readonly(
           "plots_of_mode",
@@ -220,7 +220,7 @@ V. M. Grinyak, M. V. Trofimov, Multi-model tracking of moving vessels with a fuz
             std::vector<double> strengths(lines + 1);
             const double quality =
                 estimator.get().criterion().evaluate(clipped, {strengths.data(), lines + 1});
-            return std::pair<double, py::array_t<double>>(quality, to_array(strengths));
+            return std::pair<double, py::array_t<double>>(quality, array_of(strengths));
           },
           py::arg("ratios"),
           "The Sugeno system alone: its output and the strengths (n + 1,) of its rules for the "
