@@ -388,7 +388,8 @@ void define_track(py::module_& parent) {
 
   m.def("vessel_imm", &any_vessel_imm, py::arg("radar"),
         py::arg_v("models", VesselModels{}, "VesselModels()"),
-        "The default estimator of a tracker.");
+        "The default estimator of a tracker, where its last three models rest while they are "
+        "unlikely.");
 
   py::class_<Event>(m, "Event", "A change of a track's status in a scan.")
       .def(py::pickle(
@@ -483,7 +484,8 @@ void define_track(py::module_& parent) {
       .def_readonly("time_s", &PyTracks::time_s, "(k,) of the belief")
       .def_readonly("mean", &PyTracks::mean, "(k, 4) [x, vx, y, vy]")
       .def_readonly("covariance", &PyTracks::covariance, "(k, 4, 4)")
-      .def_readonly("mode_probability", &PyTracks::mode_probability, "(k, K)")
+      .def_readonly("mode_probability", &PyTracks::mode_probability,
+                    "(k, K), 0 of models that rest")
       .def_readonly("turn_rate_rad_s", &PyTracks::turn_rate_rad_s,
                     "(k, K) of each model, positive to starboard, NaN for an inactive one; None if "
                     "models do not change theirs")

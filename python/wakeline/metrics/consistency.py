@@ -174,7 +174,7 @@ def nis_by_mode(
     >>> import wakeline as wl
     >>> tracks = wl.track_recording("joyride")
     >>> wl.metrics.nis_by_mode(tracks.nis, tracks.mode_probability).mean.shape
-    (4,)
+    (7,)
     """
     nis = np.atleast_1d(real_numbers("nis", nis))
     weights = real_numbers("mode_probability", mode_probability)

@@ -26,19 +26,21 @@ using Grouped =
 
 const Position kFix{.position_std_m = 15.0};
 
-/// Calm, turning, and a group of two that stays together.
-Grouped grouped(const Vec<double, 4>& initial = {0.9, 0.095, 0.004, 0.001}) {
+/// Calm, turning, and a group of two that stays together, of which that share leaves the calm.
+Grouped grouped(double share = 0.05, double calm = 0.9) {
   ModeChain<4>::Matrix generator_per_s;
-  generator_per_s << -0.01, 0.0095, 0.0004, 0.0001,  //
-      0.02, -0.02001, 0.00001, 0.0,                  //
-      0.0, 0.001, -0.101, 0.1,                       //
+  generator_per_s << -0.01, 0.01 * (1.0 - share), 0.008 * share, 0.002 * share,  //
+      0.02, -0.02001, 0.00001, 0.0,                                              //
+      0.0, 0.001, -0.101, 0.1,                                                   //
       0.0, 0.001, 0.2, -0.201;
   const auto straight = [](double psd_m2s3) {
     return Ekf{ConstantVelocity{WhiteAcceleration{psd_m2s3}}};
   };
   Grouped::All all(ModeChain<4>::from_generator(generator_per_s), straight(0.001),
                    Ekf{CoordinatedTurnRate{}}, straight(0.3), straight(20.0));
-  all.set_initial_mode_probability(initial);
+  const double others = 1.0 - calm;
+  all.set_initial_mode_probability(
+      {calm, others * (1.0 - share), 0.8 * others * share, 0.2 * others * share});
   return Grouped(all);
 }
 
@@ -55,7 +57,7 @@ Vec<double, 2> fix_at(double time_s, double alters_s, Draw& draw) {
 }
 
 TEST(ModelGroupImm, IsTheImmOfItsCoreWhileTheGroupRests) {
-  Grouped imm = grouped({0.9, 0.099, 0.0009, 0.0001});
+  Grouped imm = grouped(0.001);
   Grouped::Core core(imm.all().chain().first<2>(), imm.all().filter<0>(), imm.all().filter<1>());
   core.set_initial_mode_probability(imm.core().initial_mode_probability());
   EXPECT_TRUE(core.initial_mode_probability().isApprox(Vec<double, 2>(0.9, 0.1), 1e-14));
@@ -101,11 +103,11 @@ TEST(ModelGroupImm, KeepsItsEstimateWhereTheGroupJoins) {
 }
 
 TEST(ModelGroupImm, IsTheImmOfAllOnceTheGroupHasJoined) {
-  Grouped imm = grouped({0.1, 0.5, 0.3, 0.1});
+  Grouped imm = grouped(0.5, 0.1);
   ASSERT_EQ(imm.start(start()), Status::kOk);
   imm.choose_models(2.5);
   ASSERT_TRUE(imm.joined());
-  EXPECT_NEAR(imm.mode_probability()[2], 0.3, 1e-3);
+  EXPECT_NEAR(imm.mode_probability()[2], 0.8 * 0.5 * 0.9, 1e-12);
   Grouped::All all = imm.all();
   Draw draw(3);
   for (int k = 1; k <= 20; ++k) {
@@ -117,7 +119,7 @@ TEST(ModelGroupImm, IsTheImmOfAllOnceTheGroupHasJoined) {
 }
 
 TEST(ModelGroupImm, JoinsNotAtOnceWhereItHasNotFitted) {
-  Grouped imm = grouped({0.01, 0.94, 0.04, 0.01});
+  Grouped imm = grouped(0.05, 0.01);
   ASSERT_EQ(imm.start(start()), Status::kOk);
   Draw draw(4);
   int joins = 0, rests = 0;
@@ -135,7 +137,7 @@ TEST(ModelGroupImm, JoinsNotAtOnceWhereItHasNotFitted) {
 }
 
 TEST(ModelGroupImm, NeverUsesAGroupWithoutAShare) {
-  Grouped imm = grouped({0.2, 0.8, 0.0, 0.0});
+  Grouped imm = grouped(0.0, 0.2);
   ASSERT_EQ(imm.start(start()), Status::kOk);
   ASSERT_EQ(imm.predict(2.5), Status::kOk);
   EXPECT_FALSE(imm.joined());
@@ -152,28 +154,55 @@ TEST(ModelGroupImm, ACopyOfTheStateGoesTheSameWay) {
   Draw draw(5);
   Grouped imm = grouped();
   ASSERT_EQ(imm.start(start()), Status::kOk);
+  int joined = 0;
   for (int k = 1; k <= 60; ++k) {
-    Grouped copy = grouped();
+    Grouped copy = grouped(), restored = grouped();
     copy.copy_state_from(imm);
+    Archive saved;
+    imm.archive(saved);
+    Archive loaded(saved.bytes());
+    restored.archive(loaded);
+    ASSERT_TRUE(loaded.ok() && loaded.at_end());
+    ASSERT_TRUE(copy.started() && restored.started());
     const Vec<double, 2> z = fix_at(2.5 * k, 60.0, draw);
-    for (Grouped* one : {&imm, &copy}) {
+    for (Grouped* one : {&imm, &copy, &restored}) {
       ASSERT_EQ(one->predict(2.5), Status::kOk);
       ASSERT_TRUE(one->update(kFix, z));
     }
-    ASSERT_EQ(copy.joined(), imm.joined());
-    ASSERT_TRUE(beliefs_identical<4>(copy.estimate(), imm.estimate())) << "scan " << k;
+    joined += imm.joined();
+    for (const Grouped* one : {&copy, &restored}) {
+      ASSERT_EQ(one->joined(), imm.joined());
+      ASSERT_TRUE(beliefs_identical<4>(one->estimate(), imm.estimate())) << "scan " << k;
+    }
+  }
+  EXPECT_GT(joined, 5);
+  EXPECT_LT(joined, 60);
+}
+
+TEST(ModelGroupImm, AStepThatFailsChangesNothing) {
+  Grouped imm = grouped(0.5, 0.1);
+  ASSERT_EQ(imm.start(start()), Status::kOk);
+  ASSERT_EQ(imm.predict(2.5), Status::kOk);
+  for (const double dt_s : {-1.0, std::nan(""), HUGE_VAL}) {
+    const auto before = imm.estimate();
+    EXPECT_NE(imm.predict(dt_s), Status::kOk);
+    EXPECT_TRUE(imm.joined());
+    EXPECT_TRUE(beliefs_identical<4>(imm.estimate(), before));
   }
 }
 
-TEST(ModeChain, OfTheFirstModesLeavesOutTheWaysToTheOthers) {
-  const ModeChain<3> chain = grouped().all().chain().first<3>();
-  const ModeChain<3>::Matrix whole =
-      grouped().all().chain().generator_per_s()->topLeftCorner<3, 3>();
-  const ModeChain<3>::Matrix part = *chain.generator_per_s();
+TEST(ModeChain, OfTheFirstModesLeavesEachAtTheSameRate) {
+  const ModeChain<4>::Matrix all = *grouped().all().chain().generator_per_s();
+  const ModeChain<3>::Matrix part = *grouped().all().chain().first<3>().generator_per_s();
   EXPECT_TRUE(part.rowwise().sum().isZero(1e-15));
-  EXPECT_TRUE((part - whole).isDiagonal(0.0));
+  EXPECT_EQ(part.diagonal(), all.diagonal().head<3>());
+  EXPECT_NEAR(part(0, 1) / part(0, 2), all(0, 1) / all(0, 2), 1e-9);
   const ModeChain<2> stepwise(ModeChain<3>::staying(0.8).first<2>());
-  EXPECT_NEAR(stepwise.transition(1.0)(0, 0), 0.9, 1e-15);
+  EXPECT_NEAR(stepwise.transition(1.0)(0, 0), 0.8, 1e-15);
+  EXPECT_NEAR(stepwise.transition(1.0)(0, 1), 0.2, 1e-15);
+  ModeChain<3>::Matrix away_per_s = ModeChain<3>::Matrix::Zero();
+  away_per_s.row(0) << -0.5, 0.0, 0.5;
+  EXPECT_EQ((*ModeChain<3>::from_generator(away_per_s).first<2>().generator_per_s())(0, 1), 0.5);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(ModePositions, AreTheMixtureOfTheModes) {
   const double threshold = 6.0;
   int inside = 0, excluded = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    VesselImm imm = vessel_imm(Radar{});
+    VesselImm::All imm = vessel_imm(Radar{}).all();
     Gaussian<4> start{{100.0, 8.0 * normal(random), -50.0, 8.0 * normal(random)},
                       Mat<double, 4, 4>::Identity()};
     start.covariance.diagonal() << 90.0, 9.0, 400.0, 4.0;
@@ -71,7 +71,7 @@ TEST(ModePositions, AreTheMixtureOfTheModes) {
 }
 
 TEST(ModePositions, NothingThatIsNotFiniteIsInside) {
-  VesselImm imm = vessel_imm(Radar{});
+  VesselImm::All imm = vessel_imm(Radar{}).all();
   ASSERT_EQ(imm.start(Gaussian<4>{Vec<double, 4>::Zero(), Mat<double, 4, 4>::Identity()}),
             Status::kOk);
   ModePositions modes;

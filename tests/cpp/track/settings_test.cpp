@@ -112,6 +112,24 @@ TEST(RadarSettings, NamesWhatItRejects) {
     expect("bearing_offset_rad", [=](Radar& radar) { radar.bearing_offset_rad = value; });
 }
 
+TEST(VesselModelSettings, TakesAnyProbability) {
+  for (const double cruising : {0.0, 0.5, 1.0}) {
+    for (const double agile : {0.0, 0.5, 1.0}) {
+      const VesselModels models{.cruising_probability = cruising, .agile_probability = agile};
+      VesselImm imm = vessel_imm(kTestRadar, models);
+      EXPECT_NEAR(imm.core().initial_mode_probability().sum(), 1.0, 1e-12);
+      ASSERT_EQ(imm.start(Gaussian<4>{Vec<double, 4>(100.0, 5.0, 200.0, 1.0),
+                                      Mat<double, 4, 4>::Identity()}),
+                Status::kOk);
+      for (int k = 0; k < 20; ++k) {
+        ASSERT_EQ(imm.predict(2.5), Status::kOk);
+        EXPECT_NEAR(imm.mode_probability().sum(), 1.0, 1e-12);
+      }
+      EXPECT_EQ(imm.joined(), agile > 0.0) << cruising << ", " << agile;
+    }
+  }
+}
+
 TEST(VesselModelSettings, NamesWhatItRejects) {
   const auto expect = [](const char* name, const std::function<void(VesselModels&)>& spoil) {
     VesselModels models;

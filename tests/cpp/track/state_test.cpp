@@ -144,6 +144,16 @@ TEST(Saving, RejectsWhatIsNoStateOfItsOwn) {
   radar.max_speed_mps += 1.0;
   expect_rejected(VesselTracker(kTestRadar, {}, vessel_imm(radar)).save(), "other models");
   expect_rejected(make_tracker({}, radar).save(), "another radar");
+  for (double VesselModels::*const field :
+       {&VesselModels::cruising_psd_m2s3, &VesselModels::turning_sojourn_s,
+        &VesselModels::weaving_psd_m2s3, &VesselModels::agile_turn_psd_m2s3,
+        &VesselModels::agile_turn_rate_rad_s, &VesselModels::agile_probability,
+        &VesselModels::agile_time_s, &VesselModels::weaving_sojourn_s}) {
+    VesselModels models;
+    models.*field *= 1.5;
+    expect_rejected(VesselTracker(kTestRadar, {}, vessel_imm(kTestRadar, models)).save(),
+                    "another model");
+  }
   EXPECT_TRUE(victim.restore(state));
 }
 

@@ -122,14 +122,23 @@ class ModeChain {
     return ModeChain(matrix);
   }
 
-  /// The chain of the first `Count` modes: transitions to the others are left out.
+  /// The chain of the first `Count` modes: what leads from one of them to the others leads to the
+  /// rest of the first instead, in proportion, or alike where nothing else does.
   template <int Count>
-  requires(K != kRuntimeModes && Count < K) [[nodiscard]] ModeChain<Count> first() const {
+  requires(K != kRuntimeModes && Count > 1 && Count < K)
+      [[nodiscard]] ModeChain<Count> first() const {
     typename ModeChain<Count>::Matrix matrix = matrix_.template topLeftCorner<Count, Count>();
-    matrix.diagonal().setZero();
-    for (Eigen::Index i = 0; i < Count; ++i)
-      matrix(i, i) = (continuous_ ? 0.0 : 1.0) - matrix.row(i).sum();
-    return ModeChain<Count>(matrix, continuous_);
+    for (Eigen::Index i = 0; i < Count; ++i) {
+      const double stays = matrix(i, i), leaves = (continuous_ ? 0.0 : 1.0) - stays;
+      matrix(i, i) = 0.0;
+      if (const double known = matrix.row(i).sum(); known > 0.0)
+        matrix.row(i) *= leaves / known;
+      else
+        matrix.row(i).setConstant(leaves / (Count - 1));
+      matrix(i, i) = stays;
+    }
+    if (continuous_) return ModeChain<Count>(typename ModeChain<Count>::Generator{matrix});
+    return ModeChain<Count>(matrix);
   }
 
   [[nodiscard]] Eigen::Index modes() const noexcept { return matrix_.rows(); }
@@ -184,8 +193,6 @@ class ModeChain {
   explicit ModeChain(const Generator& generator) : matrix_(generator.matrix), continuous_(true) {
     if (!matrix_.allFinite()) reject("every rate of the generator of a mode chain must be finite");
   }
-
-  ModeChain(const Matrix& matrix, bool continuous) : matrix_(matrix), continuous_(continuous) {}
 
   /// Throws unless there are K modes, or 1 to kMaxModes.
   static void require_modes(const std::string& what, Eigen::Index count) {

@@ -13,11 +13,12 @@ namespace wakeline {
 /// An IMM with a group of models that rests while it is unlikely: a variable set of models.
 ///
 /// `AllBank` holds the models of `CoreBank` and, after them, those of the group. While the group
-/// rests, transitions to it are left out, and the share that it has of the probability of all but
-/// the first model returns to the initial one at the rate at which the group is left. It joins when
-/// its share of that probability exceeds `kJoining`, with the belief of these models together, and
-/// rests again below `kResting`. So it joins when the first model becomes unlikely, and where it
-/// then turns out not to fit, not again before a while has passed.
+/// rests, what leads to it in the chain leads to the core instead. The probability that it would
+/// have is then a share of that of all but the first model, which returns at the rate at which the
+/// group is left to its share of what leaves the first model. The group joins when that probability
+/// exceeds `kJoining`, with the belief of all but the first model together, and rests again below
+/// `kResting`. So it joins when the first model becomes unlikely, and where it then turns out not
+/// to fit, not again before a while has passed.
 /// Source: X. R. Li, X. Zhi, Y. Zhang, IEEE Trans. AES-35, 1999 (model-group switching).
 template <class CoreBank, class AllBank>
 class ModelGroupImm {
@@ -28,20 +29,19 @@ class ModelGroupImm {
   using Probability = typename All::Probability;
   static constexpr int kCore = Core::kModels;
   static constexpr int kModels = All::kModels;
-  static constexpr double kJoining = 0.01;   ///< probability of the group
-  static constexpr double kResting = 0.002;  ///< the same
+  static constexpr double kJoining = 0.01;   ///< probability above which the group joins,
+  static constexpr double kResting = 0.002;  ///< and below which it rests
   static constexpr int kGroup = kModels - kCore;
   static_assert(kGroup > 0);
 
-  /// The share of the group is that of its initial probability in `all`. Throws
-  /// `std::invalid_argument` unless the chain is in continuous time.
+  /// Throws `std::invalid_argument` unless the chain is in continuous time.
   explicit ModelGroupImm(const All& all) : all_(all), core_(core_of(all)) {
-    const auto& initial = all.initial_mode_probability();
-    const double group = initial.template tail<kGroup>().sum();
-    prior_share_ = share_ = group > 0.0 ? group / (1.0 - initial[0]) : 0.0;
-    of_group_ = initial.template tail<kGroup>() / (group > 0.0 ? group : 1.0);
     const auto generator_per_s = all.chain().generator_per_s();
     if (!generator_per_s) reject("chain must be in continuous time for a group of models");
+    of_group_ = generator_per_s->row(0).template tail<kGroup>();
+    const double joining_per_s = of_group_.sum(), left_per_s = -(*generator_per_s)(0, 0);
+    if (joining_per_s > 0.0) of_group_ /= joining_per_s;
+    prior_share_ = share_ = left_per_s > 0.0 ? joining_per_s / left_per_s : 0.0;
     leaving_per_s_ =
         of_group_.dot(generator_per_s->template bottomLeftCorner<kGroup, kCore>().rowwise().sum());
   }
@@ -77,9 +77,10 @@ class ModelGroupImm {
 
   /// Has the group join or rest for a step; part of `predict`.
   void choose_models(double dt_s) noexcept {
+    if (check_time_step(dt_s) != Status::kOk) return;
     if (joined_) {
       if (all_.mode_probability().template tail<kGroup>().sum() < kResting) rest();
-    } else if (dt_s > 0.0) {
+    } else {
       share_ = prior_share_ + (share_ - prior_share_) * std::exp(-leaving_per_s_ * dt_s);
       if (share_ * (1.0 - core_.mode_probability()[0]) > kJoining) join();
     }
@@ -121,7 +122,9 @@ class ModelGroupImm {
       core_.gather([&](int) -> const Core& { return other.core_; });
   }
 
-  [[nodiscard]] bool started() const noexcept { return core_.started(); }
+  [[nodiscard]] bool started() const noexcept {
+    return visit(*this, [](const auto& imm) { return imm.started(); });
+  }
   /// Whether the group has joined.
   [[nodiscard]] bool joined() const noexcept { return joined_; }
   /// The Imm with the group, and that without; the one that is not in use is as it was left.
@@ -141,7 +144,10 @@ class ModelGroupImm {
       Core core(all.chain().template first<kCore>(), all.template filter<int(Index)>()...);
       typename Core::Probability initial = all.initial_mode_probability().template head<kCore>();
       auto others = initial.template tail<kCore - 1>();
-      if (const double sum = others.sum(); sum > 0.0) others *= (1.0 - initial[0]) / sum;
+      if (const double sum = others.sum(); sum > 0.0)
+        others *= (1.0 - initial[0]) / sum;
+      else
+        others.setConstant((1.0 - initial[0]) / (kCore - 1));
       core.set_initial_mode_probability(initial);
       return core;
     }
@@ -187,8 +193,8 @@ class ModelGroupImm {
   Core core_;
   Vec<double, kGroup> of_group_;  ///< how the group's probability is shared when it joins
   double leaving_per_s_;          ///< rate at which the group is left
-  double prior_share_;            ///< of the group in the probability of all but the first model
-  double share_;                  ///< the same now, while it rests
+  double prior_share_;            ///< of the group in what leaves the first model
+  double share_;  ///< of the group in the probability of all but the first, while it rests
   bool joined_ = false;
 };
 

@@ -53,11 +53,12 @@ struct UpdateStep {
   double total = 0.0;
   Gaussian<4> kinematics = {};
 
-  /// As those of `PredictionStep`.
+  /// The same step of another estimator.
   template <class Other>
   [[nodiscard]] UpdateStep<Other> of(Other& other) const noexcept {
     return {&other, fixes, none, share};
   }
+  /// Takes the result of the same step of another estimator.
   template <class Other>
   void take_result(const UpdateStep<Other>& step) noexcept {
     total = step.total;
@@ -289,7 +290,7 @@ class SideBySide<ModelGroupImm<CoreBank, AllBank>> {
   }
 
  private:
-  static constexpr std::size_t kTogether = 64;  ///< steps that are sorted together
+  static constexpr std::size_t kTogether = 32;  ///< steps that are sorted together
 
   template <class Step, class Perform>
   void apart(std::span<Step> steps, const Perform& perform) noexcept {
@@ -316,6 +317,7 @@ class SideBySide<ModelGroupImm<CoreBank, AllBank>> {
       step_of[count] = &step;
       some[count++] = step.of(*imm);
     }
+    if (count == 0) return;
     perform(side_by_side, std::span(some.data(), count));
     for (std::size_t k = 0; k < count; ++k) step_of[k]->take_result(some[k]);
   }

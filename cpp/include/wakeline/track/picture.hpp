@@ -334,6 +334,8 @@ struct Picture {
   static void copy_state(const Estimator& from, Estimator& to) noexcept {
     if constexpr (requires { to.copy_state_from(from); })
       to.copy_state_from(from);
+    else if constexpr (requires { InLanes<Estimator, double>::of(from); })
+      to.gather([&](int) -> const Estimator& { return from; });
     else
       to = from;
   }

@@ -38,7 +38,7 @@ inline bool within_speed_limit(const Gaussian<2>& first, const Gaussian<2>& seco
   const Vec<double, 2> d = second.mean - first.mean;
   const double distance = d.norm();
   if (distance <= max_speed_mps * dt_s) return true;
-  const Vec<double, 2> along = distance > 0.0 ? Vec<double, 2>(d / distance) : Vec<double, 2>(1, 0);
+  const Vec<double, 2> along = d / distance;
   const double variance = along.dot((first.covariance + second.covariance) * along);
   return distance <= max_speed_mps * dt_s + sigmas * std::sqrt(variance);
 }

@@ -46,11 +46,10 @@ template <class Track, class Estimator>
   return {Vec<double, 4>::Constant(kNaN), Mat<double, 4, 4>::Constant(kNaN)};
 }
 
-/// Distinguishes estimators of different models or chains, by their estimates after a slow start
-/// and after fast ones, two time steps and a reading.
-template <TrackEstimator Estimator>
-[[nodiscard]] std::uint64_t fingerprint(const Estimator& prototype) {
-  Archive fields;
+/// Writes the states of an estimator after a slow start and after fast ones, two time steps and a
+/// reading.
+template <class Estimator>
+void write_samples(const Estimator& prototype, Archive& fields) {
   const Alternative<Fix> reading{Fix{}, {101.0, 199.0}, 1.0};
   for (const double speed_mps : {5.0, 15.0, 40.0, 200.0}) {
     Estimator estimator = prototype;
@@ -61,6 +60,14 @@ template <TrackEstimator Estimator>
     (void)estimator.update(std::span(&reading, 1), 1.0, std::span(&share, 1));
     estimator.archive(fields);
   }
+}
+
+/// Distinguishes estimators of different models or chains, also of those that rest at first.
+template <TrackEstimator Estimator>
+[[nodiscard]] std::uint64_t fingerprint(const Estimator& prototype) {
+  Archive fields;
+  write_samples(prototype, fields);
+  if constexpr (requires { prototype.all(); }) write_samples(prototype.all(), fields);
   return checksum(fields.bytes());
 }
 

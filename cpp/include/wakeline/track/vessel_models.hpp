@@ -202,7 +202,7 @@ struct VesselModels {
   }
 };
 
-/// The estimator made of them, of which the agile ones rest while a vessel cruises.
+/// The estimator made of them, of which the agile ones rest where they are unlikely.
 using VesselImm =
     ModelGroupImm<FilterBank<Ekf<WanderingCourse>, Ekf<WanderingCourse>, Ekf<WanderingCourse>,
                              Ekf<CoordinatedTurnRate>>,
