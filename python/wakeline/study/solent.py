@@ -83,6 +83,7 @@ _TUNED = wl.VesselModels(
     steady_sojourn_s=150.0,
     restless_sojourn_s=50.0,
     turning_sojourn_s=80.0,
+    agile_probability=0.015,
 )
 _OTHER_NOISES_M2S3 = (0.003, 0.01, 0.3)
 _SHOWN = ("kalman_ca", "kalman_cv", "mode_history")
