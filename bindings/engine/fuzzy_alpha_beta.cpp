@@ -16,10 +16,6 @@ using PyFuzzy = PyEstimator<Fuzzy>;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-py::array_t<double> array_of(std::span<const double> values) {
-  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
 /// What the criterion saw and did in every scan of one or R runs.
 struct FuzzyTrace {
   py::array_t<double> quality, sigma_hat_m, residual_ratios, rule_strengths, prediction_m,

@@ -70,7 +70,7 @@ std::optional<py::array_t<double>> known_turn_rates(const PyImm& estimator) {
         },
         imm.bank().filter(k).variant());
   if (rates.size() != static_cast<std::size_t>(imm.bank().size())) return std::nullopt;
-  return py::array_t<double>(static_cast<py::ssize_t>(rates.size()), rates.data());
+  return array_of(rates);
 }
 
 Arguments adaptive_grid_arguments(const PyEstimator<AnyAdaptiveGridImm>& estimator) {

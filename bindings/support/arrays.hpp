@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,11 @@ inline void require_shape(bool condition, const std::string& name, const std::st
   if (!condition)
     throw py::value_error(name + " must have shape " + wanted + ", got " +
                           shape_text(shape_of(array)));
+}
+
+/// Numbers as a new numpy array.
+inline py::array_t<double> array_of(std::span<const double> values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 /// Any Eigen vector or matrix as a new numpy array.

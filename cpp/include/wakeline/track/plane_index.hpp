@@ -110,8 +110,7 @@ class PlaneIndex {
   };
 
   static constexpr double kNowhere = std::numeric_limits<double>::infinity();
-  static constexpr std::size_t kFew =
-      64;  ///< points that are not sorted, and of a square that is not crowded
+  static constexpr std::size_t kFew = 64;  ///< points that are not sorted, or that a square has
   static constexpr std::size_t kSide = 8;  ///< numbers in the widest register
 
   /// Has no point of the strips from one to another north of one of a later strip.
