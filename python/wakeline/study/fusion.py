@@ -254,6 +254,7 @@ def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, 
         sums["matched"] += found.sum()
         own = apart_m.argmin(axis=0)
         twice = np.bincount(own[apart_m.min(axis=0) < 50.0], minlength=len(truth)) > 1
+        twice &= _alone(truth)
         double_s = np.where(twice, double_s + STEP_S, 0.0)
         longest_s = max(longest_s, double_s.max())
         names = np.array(tracks.identity)[nearest]
@@ -266,6 +267,12 @@ def follow(scene: Scene, sensors: set[int], window_s: float = 0.0) -> dict[str, 
         "double_s": longest_s,
         "identity_right": sums["right"] / sums["matched"],
     }
+
+
+def _alone(truth: np.ndarray) -> np.ndarray:
+    """Whether no other vessel is within 100 m, whose track could be the nearer."""
+    between_m = np.hypot(*(truth[:, None, ::2] - truth[None, :, ::2]).transpose(2, 0, 1))
+    return np.sum(between_m < 100.0, axis=1) == 1
 
 
 def _scored_times() -> np.ndarray:
