@@ -150,6 +150,7 @@
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/duplicates.hpp"
 #include "wakeline/track/existence.hpp"
+#include "wakeline/track/plane_slices.hpp"
 #include "wakeline/track/identities.hpp"
 #include "wakeline/track/initiation.hpp"
 #include "wakeline/track/innovation_consistency.hpp"

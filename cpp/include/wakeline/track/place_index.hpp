@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "wakeline/track/plane_slices.hpp"
 #include "wakeline/track/plane_index.hpp"
 
 namespace wakeline {
@@ -20,39 +21,48 @@ namespace wakeline {
 class PlaceIndex {
  public:
   explicit PlaceIndex(int capacity) {
-    layers_.reserve(kLayers);
-    for (int k = 0; k < kLayers; ++k) layers_.push_back({PlaneIndex(capacity)});
+    places_.reserve(static_cast<std::size_t>(capacity));
+    slices_.reserve(int{kFew});
+    for (PlaneIndex& layer : layers_) layer.reserve(capacity);
+    largest_m2_.fill(kNone);
   }
 
   void clear() noexcept {
-    for (Layer& layer : layers_) {
-      layer.places.clear();
-      layer.largest_m2 = 0.0;
-    }
+    places_.clear();
+    largest_m2_.fill(kNone);
   }
 
   /// Adds a place, [north, east] m, which must be finite, with a variance; it is found
   /// as `name`.
   void add(const Vec<double, 2>& position, double variance_m2, int name) noexcept {
-    Layer& layer = layers_[static_cast<std::size_t>(layer_of(variance_m2))];
-    layer.places.add(position, name);
-    layer.largest_m2 = std::max(layer.largest_m2, variance_m2);
+    const int layer = layer_of(variance_m2);
+    places_.push_back({position, name, layer});
+    double& largest_m2 = largest_m2_[static_cast<std::size_t>(layer)];
+    largest_m2 = std::max(largest_m2, variance_m2);
   }
 
   /// Sorts the places; to be called when all are there.
   void sort() noexcept {
-    for (Layer& layer : layers_) layer.places.sort();
+    if (is_few()) return slices_.lay_out(places_);
+    for (PlaneIndex& layer : layers_) layer.clear();
+    for (const Place& place : places_)
+      layers_[static_cast<std::size_t>(place.layer)].add(place.position, place.name);
+    for (PlaneIndex& layer : layers_) layer.sort();
   }
 
-  /// Calls `f(name)` for the places in a square about a position, layer by layer, at most so many
-  /// of a layer, about the nearest: `reach_m(variance)` is its half side for places of at most that
-  /// variance. Where all is crowded on one spot, a search takes no longer than elsewhere.
+  /// Calls `f(name)` for the places in a square about a position, at most so many of a layer, about
+  /// the nearest: `reach_m(variance)` is its half side for places of at most that variance. Where
+  /// all is crowded on one spot, a search takes no longer than elsewhere.
   template <class Reach, class Function>
   void for_each_nearest(const Vec<double, 2>& position, const Reach& reach_m, int most,
                         Function&& function) const {
-    for (const Layer& layer : layers_)
-      if (!layer.places.empty())
-        layer.places.for_each_nearest(position, reach_m(layer.largest_m2), most, function);
+    std::array<double, kLayers> reach_of;
+    for (std::size_t k = 0; k < kLayers; ++k)
+      reach_of[k] = largest_m2_[k] > kNone ? reach_m(largest_m2_[k]) : -1.0;
+    if (is_few())
+      return slices_.for_each_nearest(position, reach_of, most, function);
+    for (std::size_t k = 0; k < kLayers; ++k)
+      if (largest_m2_[k] > kNone) layers_[k].for_each_nearest(position, reach_of[k], most, function);
   }
 
   /// The same for the elements of a vector by these names, which need not be in the cache: they are
@@ -61,7 +71,7 @@ class PlaceIndex {
   void for_each_nearest_of(const std::vector<Element>& elements, const Vec<double, 2>& position,
                            const Reach& reach_m, Function&& function) const {
     constexpr std::size_t kLine = 64;  // bytes of the cache
-    std::array<int, std::size_t{kLayers} * kMost> found;
+    std::array<int, kLayers * kMost> found;
     std::size_t count = 0;
     for_each_nearest(position, reach_m, kMost, [&](int name) {
       found[count++] = name;
@@ -74,18 +84,22 @@ class PlaceIndex {
 
  private:
   /// Standard deviations below 32, 128, 512 m, 2 km, and any.
-  static constexpr int kLayers = 5;
+  static constexpr std::size_t kLayers = 5;
+  static constexpr double kNone = -1.0;
+  static constexpr std::size_t kFew = 256;
 
   static int layer_of(double variance_m2) noexcept {
-    if (!(variance_m2 < 0x1p22)) return kLayers - 1;
+    if (!(variance_m2 < 0x1p22)) return int{kLayers} - 1;
     return variance_m2 < 0x1p10 ? 0 : (std::ilogb(variance_m2) - 6) / 4;
   }
 
-  struct Layer {
-    PlaneIndex places;
-    double largest_m2 = 0.0;
-  };
-  std::vector<Layer> layers_;
+  /// Whether one pass through all layers looks at few, as of a sector.
+  [[nodiscard]] bool is_few() const noexcept { return places_.size() <= kFew; }
+
+  std::vector<Place> places_;
+  PlaneSlices slices_;  ///< of few places, of all layers
+  std::array<PlaneIndex, kLayers> layers_;
+  std::array<double, kLayers> largest_m2_{};  ///< largest variance of a layer, or `kNone`
 };
 
 }  // namespace wakeline

@@ -9,24 +9,27 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "wakeline/core/types.hpp"
+#include "wakeline/track/plane_slices.hpp"
 
 namespace wakeline {
 
 /// Points of the plane, found by where they are.
 ///
-/// Every √n of n points, from south to north, make a strip, and each strip is sorted from west to
-/// east. A search for the few points near a position takes about log n steps for any distribution
-/// of the points, also with all in a harbour but one far off. Sorting takes n log n. Few points, as
-/// a sector has, are left as they are, and a search looks at all of them. Memory is taken by the
-/// constructor.
+/// They lie in slices. Where these are crowded, with all in a harbour but one far off, every √n of n
+/// points, from south to north, make a strip, and each strip is sorted from west to east: a search
+/// for the few points near a position takes about log n steps, and sorting n log n. Memory is taken
+/// by `reserve`.
 class PlaneIndex {
  public:
-  explicit PlaneIndex(int capacity) {
+  /// Takes memory for so many points.
+  void reserve(int capacity) {
     const auto size = static_cast<std::size_t>(capacity);
     points_.reserve(size);
+    slices_.reserve(capacity);
     south_m_.reserve(static_cast<std::size_t>(std::sqrt(double(capacity))) + 2);
   }
 
@@ -37,12 +40,13 @@ class PlaneIndex {
 
   /// Adds a point, [north, east] m, which must be finite; it is found as `name`.
   void add(const Vec<double, 2>& position, int name) noexcept {
-    points_.push_back({position[0], position[1], name});
+    points_.push_back({position, name});
   }
 
   /// Sorts the points; to be called when all are there.
   void sort() noexcept {
-    if (points_.size() <= kFew) return lay_out();
+    slices_.lay_out(points_);
+    if (!slices_.is_crowded()) return;
     const std::ptrdiff_t size = std::ssize(points_);
     per_strip_ = static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size))));
     part(0, (size + per_strip_ - 1) / per_strip_);
@@ -51,27 +55,28 @@ class PlaneIndex {
     for (std::ptrdiff_t first = 0; first < size; first += per_strip_) {
       const auto begin = points_.begin() + first;
       const auto end = points_.begin() + strip_end(first / per_strip_);
-      std::sort(begin, end, [](const Point& a, const Point& b) {
-        return a.east < b.east || (a.east == b.east && a.name < b.name);
+      std::sort(begin, end, [](const Place& a, const Place& b) {
+        return a.position[1] < b.position[1] || (a.position[1] == b.position[1] && a.name < b.name);
       });
       double south_m = kNowhere;
       for (auto point = begin; point != end; ++point) {
-        south_m = std::min(south_m, point->north);
-        north_m_ = std::max(north_m_, point->north);
+        south_m = std::min(south_m, point->position[0]);
+        north_m_ = std::max(north_m_, point->position[0]);
       }
       south_m_.push_back(south_m);
-      west_m_ = std::min(west_m_, begin->east);
-      east_m_ = std::max(east_m_, std::prev(end)->east);
+      west_m_ = std::min(west_m_, begin->position[1]);
+      east_m_ = std::max(east_m_, std::prev(end)->position[1]);
     }
   }
 
   /// Calls `f(name)` for the points in the square of half side `reach_m` about a position, at most
-  /// so many, and then of the nearest strips and in each strip of the nearest points.
+  /// so many, `PlaneSlices::kMostNear` at most, about the nearest.
   template <class Function>
   void for_each_nearest(const Vec<double, 2>& position, double reach_m, int most,
                         Function&& function) const {
     const std::ptrdiff_t strips = std::ssize(south_m_);
-    if (strips == 0) return look_at_all(position, reach_m, most, function);
+    if (strips == 0)
+      return slices_.for_each_nearest(position, std::span(&reach_m, 1), most, function);
     const double south = position[0] - reach_m;
     const double north = position[0] + reach_m;
     if (south_m_.front() > north || north_m_ < south || west_m_ - position[1] > reach_m ||
@@ -92,34 +97,25 @@ class PlaneIndex {
                              : down + 1 < strips ? position[0] - south_m_[at(down + 1)]
                                                  : 0.0;
       if (!(std::min(above_m, below_m) <= reach_m)) return;
-      visit_strip(above_m < below_m ? up++ : down--, position[1], reach_m, [&](const Point& point) {
-        if (!(point.north >= south && point.north <= north)) return true;
+      visit_strip(above_m < below_m ? up++ : down--, position[1], reach_m, [&](const Place& point) {
+        if (!(point.position[0] >= south && point.position[0] <= north)) return true;
         function(point.name);
         return --most > 0;
       });
     }
   }
 
-  [[nodiscard]] bool empty() const noexcept { return points_.empty(); }
-
  private:
-  struct Point {
-    double north;
-    double east;
-    int name;
-  };
-
   static constexpr double kNowhere = std::numeric_limits<double>::infinity();
-  static constexpr std::size_t kFew = 64;  ///< points that are not sorted, or that a square has
-  static constexpr std::size_t kSide = 8;  ///< numbers in the widest register
+  static constexpr std::size_t kFew = 64;  ///< points that a square has
 
   /// Has no point of the strips from one to another north of one of a later strip.
   void part(std::ptrdiff_t first, std::ptrdiff_t last) noexcept {
     if (last - first < 2) return;
     const std::ptrdiff_t middle = (first + last) / 2;
     std::nth_element(points_.begin() + first * per_strip_, points_.begin() + middle * per_strip_,
-                     points_.begin() + strip_end(last - 1), [](const Point& a, const Point& b) {
-                       return a.north < b.north || (a.north == b.north && a.name < b.name);
+                     points_.begin() + strip_end(last - 1), [](const Place& a, const Place& b) {
+                       return a.position[0] < b.position[0] || (a.position[0] == b.position[0] && a.name < b.name);
                      });
     part(first, middle);
     part(middle, last);
@@ -130,46 +126,6 @@ class PlaneIndex {
   }
 
   static std::size_t at(std::ptrdiff_t index) noexcept { return static_cast<std::size_t>(index); }
-
-  /// Lays few points out side by side, and as many at nowhere as fill the last register.
-  void lay_out() noexcept {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      few_north_m_[k] = points_[k].north;
-      few_east_m_[k] = points_[k].east;
-    }
-    for (std::size_t k = points_.size(); k % kSide != 0; ++k) few_north_m_[k] = kNan;
-  }
-
-  /// `for_each_nearest` of few points, without a branch for each, which a processor would guess
-  /// wrong.
-  template <class Function>
-  void look_at_all(const Vec<double, 2>& position, double reach_m, int most,
-                   Function&& function) const {
-    const double south = position[0] - reach_m, north = position[0] + reach_m;
-    const double west = position[1] - reach_m, east = position[1] + reach_m;
-    std::array<std::int64_t, kFew> is_inside;
-    const std::size_t size = points_.size(), filled = (size + kSide - 1) / kSide * kSide;
-    for (std::size_t k = 0; k < filled; ++k)
-      is_inside[k] = std::int64_t{few_north_m_[k] >= south} &
-                     std::int64_t{few_north_m_[k] <= north} & std::int64_t{few_east_m_[k] >= west} &
-                     std::int64_t{few_east_m_[k] <= east};
-    std::array<const Point*, kFew> found;
-    std::ptrdiff_t count = 0;
-    for (std::size_t k = 0; k < size; ++k) {
-      found[at(count)] = &points_[k];
-      count += is_inside[k];
-    }
-    if (count > most) {
-      const auto apart_m = [&](const Point* point) {
-        return std::max(std::abs(point->north - position[0]), std::abs(point->east - position[1]));
-      };
-      std::nth_element(found.begin(), found.begin() + most, found.begin() + count,
-                       [&](const Point* a, const Point* b) { return apart_m(a) < apart_m(b); });
-      count = most;
-    }
-    for (std::ptrdiff_t k = 0; k < count; ++k) function(found[at(k)]->name);
-  }
 
   /// Lists the names of the points in a square and returns how many there are, or a number above
   /// all where there are too many.
@@ -185,11 +141,11 @@ class PlaneIndex {
     for (; strip < strips && south_m_[at(strip)] <= north; ++strip) {
       const auto end = points_.begin() + strip_end(strip);
       const auto begin = points_.begin() + strip * per_strip_;
-      auto point = first_not_below(begin, end - begin, west, [](const Point& p) { return p.east; });
-      for (; point != end && point->east <= east; ++point) {
+      auto point = first_not_below(begin, end - begin, west, [](const Place& p) { return p.position[1]; });
+      for (; point != end && point->position[1] <= east; ++point) {
         if (count == std::ssize(names)) return std::numeric_limits<std::ptrdiff_t>::max();
         names[at(count)] = point->name;
-        count += std::ptrdiff_t{point->north >= south} & std::ptrdiff_t{point->north <= north};
+        count += std::ptrdiff_t{point->position[0] >= south} & std::ptrdiff_t{point->position[0] <= north};
       }
     }
     return count;
@@ -202,11 +158,11 @@ class PlaneIndex {
                    const Function& function) const {
     const auto begin = points_.begin() + strip * per_strip_;
     const auto end = points_.begin() + strip_end(strip);
-    auto right = first_not_below(begin, end - begin, east_m, [](const Point& p) { return p.east; });
+    auto right = first_not_below(begin, end - begin, east_m, [](const Place& p) { return p.position[1]; });
     auto left = right;
     while (right != end || left != begin) {
-      const double right_m = right != end ? right->east - east_m : kNowhere;
-      const double left_m = left != begin ? east_m - std::prev(left)->east : kNowhere;
+      const double right_m = right != end ? right->position[1] - east_m : kNowhere;
+      const double left_m = left != begin ? east_m - std::prev(left)->position[1] : kNowhere;
       if (!(std::min(right_m, left_m) <= reach_m)) return;
       if (!function(right_m <= left_m ? *right++ : *--left)) return;
     }
@@ -225,9 +181,9 @@ class PlaneIndex {
     return first;
   }
 
-  std::vector<Point> points_;    ///< strip by strip, each from west to east; few as they came
-  std::vector<double> south_m_;  ///< southernmost point of each strip; none of few points
-  std::array<double, kFew> few_north_m_{}, few_east_m_{};  ///< of few points, as they came
+  PlaneSlices slices_;
+  std::vector<Place> points_;    ///< strip by strip, each from west to east
+  std::vector<double> south_m_;  ///< southernmost point of each strip; none of slices
   std::ptrdiff_t per_strip_ = 1;
   double north_m_ = 0.0, west_m_ = 0.0, east_m_ = 0.0;  ///< of the outermost points
 };
