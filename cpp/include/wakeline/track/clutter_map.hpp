@@ -62,7 +62,8 @@ struct LearnedPlots {
 class ClutterMap {
  public:
   /// `cell_m` 0 switches the map off.
-  ClutterMap(double cell_m, double memory_s) : cell_m_(cell_m), fading_(memory_s) {
+  ClutterMap(double cell_m, double memory_s)
+      : cell_m_(cell_m), memory_s_(memory_s), fading_(memory_s) {
     if (enabled()) cells_.resize(kCells);
   }
 
@@ -77,9 +78,9 @@ class ClutterMap {
     for (const Corner& corner : corners(position)) {
       const Cell& cell = cells_[place(corner)];
       if (cell.north == corner.north && cell.east == corner.east)
-        plots += corner.share * faded(cell, time_s);
+        plots += corner.share * cell.plots;
     }
-    return per_m2_and_scan(plots, period_s);
+    return per_m2_and_scan(plots > 0.0 ? plots * faded_at(time_s) : 0.0, period_s);
   }
 
   /// The part of that density that these plots are.
@@ -100,13 +101,14 @@ class ClutterMap {
   /// Learns a plot that is false with probability `weight`.
   void add(const Vec<double, 2>& position, double time_s, double weight) noexcept {
     if (!enabled()) return;
+    if (std::abs(time_s - epoch_s_) > kEpochs * memory_s_) begin_epoch(time_s);
+    const double of_epoch = weight / faded_at(time_s);
     for (const Corner& corner : corners(position)) {
       Cell& cell = cells_[place(corner)];
       const bool same = cell.north == corner.north && cell.east == corner.east;
-      const double before = faded(cell, time_s);
-      const double added = weight * corner.share;
-      if (!same && before > added) continue;
-      cell = {corner.north, corner.east, (same ? before : 0.0) + added, time_s};
+      const double added = of_epoch * corner.share;
+      if (!same && cell.plots > added) continue;
+      cell = {corner.north, corner.east, (same ? cell.plots : 0.0) + added};
     }
   }
 
@@ -114,6 +116,7 @@ class ClutterMap {
   void archive(Archive& fields) {
     const std::size_t size = cells_.size();
     fields(cells_, size);
+    fields(epoch_s_);
     if (cells_.size() == size) return;
     cells_.resize(size);
     fields.fail();
@@ -121,12 +124,12 @@ class ClutterMap {
 
  private:
   static constexpr std::size_t kCells = 1 << 14;
+  static constexpr double kEpochs = 100.0;  ///< memories after which a new epoch begins
 
   struct Cell {
     std::int32_t north = 0;
     std::int32_t east = 0;
-    double plots = 0.0;
-    double time_s = 0.0;
+    double plots = 0.0;  ///< as many as would fade from the epoch on to what is left of them
   };
   struct Corner {
     std::int32_t north;
@@ -134,10 +137,23 @@ class ClutterMap {
     double share;
   };
 
-  /// What is left of the plots that a cell or a target has.
-  template <class Holder>
-  [[nodiscard]] double faded(const Holder& of, double time_s) const noexcept {
-    return of.plots > 0.0 ? of.plots * fading_.after(std::fabs(time_s - of.time_s)) : 0.0;
+  /// What is left of the plots of a target.
+  [[nodiscard]] double faded(const LearnedPlots& learned, double time_s) const noexcept {
+    return learned.plots > 0.0
+               ? learned.plots * fading_.after(std::fabs(time_s - learned.time_s))
+               : 0.0;
+  }
+
+  /// What is left of a plot of the epoch.
+  [[nodiscard]] double faded_at(double time_s) const noexcept {
+    return fading_.after(time_s - epoch_s_);
+  }
+
+  /// Counts the plots of all cells as of another epoch.
+  void begin_epoch(double time_s) noexcept {
+    const double factor = time_s > epoch_s_ ? faded_at(time_s) : 1.0;
+    for (Cell& cell : cells_) cell.plots *= factor;
+    epoch_s_ = time_s;
   }
 
   /// The density that faded plots in one cell mean.
@@ -189,6 +205,8 @@ class ClutterMap {
   }
 
   double cell_m_;
+  double memory_s_;
+  double epoch_s_ = 0.0;
   mutable detail::Fading fading_;  // what it remembers it would find again
   std::vector<Cell> cells_;
 };
