@@ -109,6 +109,13 @@ class Beam {
   double swept_from_rad_ = 0.0;
 };
 
+/// Arc tangent of a positive slope. Of a gentle one it is the slope, which takes less time and is
+/// more by a hundredth at most.
+inline double angle_of(double slope) noexcept {
+  constexpr double kGentle = 0.17;
+  return slope < kGentle ? slope : std::atan(slope);
+}
+
 /// A gate about a predicted position as seen from own ship: the angles at which plots of the target
 /// may come in the turn after the beam passed `passed_rad`.
 class GateSight {
@@ -139,7 +146,7 @@ class GateSight {
     const double across_m =
         half_m({-along_[1], along_[0]}, range_m_ * range_m_ * errors_.bearing_variance_rad2());
     const double half_rad =
-        along_m < range_m_ ? std::atan2(across_m, range_m_ - along_m) : kPi<double>;
+        along_m < range_m_ ? angle_of(across_m / (range_m_ - along_m)) : kPi<double>;
     return {centre_rad_ - half_rad, centre_rad_, centre_rad_ + half_rad};
   }
 

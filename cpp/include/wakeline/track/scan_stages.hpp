@@ -329,7 +329,8 @@ class ScanStages {
     const double range_m = (track.position() - state().position()).norm();
     const double way_m =
         picture_.kPointedPeriods * state().radar.max_speed_mps * state().radar.period_s;
-    const double way_rad = way_m < range_m ? std::asin(way_m / range_m) : kPi<double>;
+    const double aside_m = std::sqrt(std::max(range_m * range_m - way_m * way_m, 0.0));
+    const double way_rad = aside_m > 0.0 ? angle_of(way_m / aside_m) : kPi<double>;
     const double wide_rad = arc.to_rad - arc.from_rad + way_rad;
     return arc.centre_rad - std::min(wide_rad, kPi<double>);
   }
