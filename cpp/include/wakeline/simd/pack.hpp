@@ -28,6 +28,9 @@
 #elif defined(__AVX2__) && defined(__FMA__)
 #define WAKELINE_INSTRUCTION_SET avx2
 #define WAKELINE_REGISTER_BYTES 32
+#elif defined(__AVX2__)
+#define WAKELINE_INSTRUCTION_SET avx2_unfused
+#define WAKELINE_REGISTER_BYTES 32
 #elif defined(__SSE2__)
 #define WAKELINE_INSTRUCTION_SET sse2
 #define WAKELINE_REGISTER_BYTES 16
