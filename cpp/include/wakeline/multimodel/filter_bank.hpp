@@ -78,6 +78,16 @@ template <auto To, class Scalar, class Part>
   mirror_lower<Scalar, kStates>(sum.covariance);
 }
 
+/// The mean and covariance of the mixture of a bank's beliefs, by weights that sum to one.
+template <class Bank, class Weights>
+[[gnu::always_inline]] inline auto moment_matched(const Bank& bank,
+                                                  const Weights& weight) noexcept {
+  auto sum = bank.empty_estimate();
+  bank.for_each_belief([&](int k, const auto& belief) { add_mean(sum, weight[k], belief, sum); });
+  bank.for_each_belief([&](int k, const auto& belief) { add_spread(sum, weight[k], belief, sum); });
+  return decltype(sum)(sum);  // a copy, so that the sum stays in registers
+}
+
 /// Filters composed at compile time, of any kinds and state sizes, each with its belief before a
 /// step.
 ///

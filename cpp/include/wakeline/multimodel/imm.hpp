@@ -209,12 +209,7 @@ class Imm {
   /// The moment-matched estimate, over the state where all filters share one, else over `[x, vx, y,
   /// vy]`: equations (15) and (16) of paper A.
   [[nodiscard]] WAKELINE_FLATTEN auto estimate() const noexcept {
-    auto sum = bank_.empty_estimate();
-    bank_.for_each_belief(
-        [&](int mode, const auto& belief) { add_mean(sum, probability_[mode], belief, sum); });
-    bank_.for_each_belief(
-        [&](int mode, const auto& belief) { add_spread(sum, probability_[mode], belief, sum); });
-    return decltype(sum)(sum);  // a copy, so that the sum stays in registers
+    return moment_matched(bank_, probability_);
   }
 
   [[nodiscard]] const Probability& mode_probability() const noexcept { return probability_; }

@@ -163,11 +163,7 @@ class ModelGroupImm {
     probability << (1.0 - share_) * of_others, share_ * of_group_;
     probability *= 1.0 - first;
     probability[0] = first;
-    auto common = CoreBank::empty_estimate();
-    core_.bank().for_each_belief(
-        [&](int mode, const auto& belief) { add_mean(common, of_others[mode], belief, common); });
-    core_.bank().for_each_belief(
-        [&](int mode, const auto& belief) { add_spread(common, of_others[mode], belief, common); });
+    const auto common = moment_matched(core_.bank(), of_others);
     all_.assign(probability, [&](auto mode, auto& filter) {
       if constexpr (mode.value < kCore)
         filter.to_assign() = core_.template filter<mode.value>().estimate();
