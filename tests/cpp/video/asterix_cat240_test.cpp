@@ -279,6 +279,7 @@ TEST(Cat240, Reports_what_it_cannot_read_and_continues) {
   expect(with(28, {0xFF, 0xFF, 0xFF}), Cat240Fault::kCounters, 0xFFFFFF, 40);
   expect(with(26, {0, 39}), Cat240Fault::kCounters, 40, 39);
   expect(with(26, {0xFF, 0xFF, 0, 0, 41}), Cat240Fault::kCounters, 41, 40);
+  expect(with(24, {0x80, 4, 0, 0}), Cat240Fault::kCounters, 1, 0);  // compressed
   expect(with(31, {11}), Cat240Fault::kItemLength, 45, 44);
   expect(with(31, {255}), Cat240Fault::kItemLength, 1021, 44);
   expect(with(4, {0xFF}), Cat240Fault::kFieldSpecification, 2, 3);

@@ -335,7 +335,8 @@ class Cat240Reader {
     const Octets room = block.octets.subspan(1);
     const std::size_t given = number(counters.first(2));
     const std::size_t held = std::min<std::size_t>(given, room.size());
-    const std::size_t needed = video_.compressed ? given : video_.octets();
+    const std::size_t needed =
+        video_.compressed ? std::max(given, std::size_t{1}) : video_.octets();
     if (needed > held) return reject(Cat240Fault::kCounters, begin, needed, held);
     video_.packed = room.first(needed);
     return true;
