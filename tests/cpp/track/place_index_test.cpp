@@ -30,7 +30,8 @@ double reach_m(double variance_m2) { return 50.0 + 4.0 * std::sqrt(variance_m2);
 
 std::vector<int> found_near(const PlaceIndex& index, const Vec<double, 2>& position) {
   std::vector<int> names;
-  index.for_each_nearest(position, reach_m, PlaneSlices::kMostNear, [&](int name) { names.push_back(name); });
+  index.for_each_nearest(position, reach_m, PlaneSlices::kMostNear,
+                         [&](int name) { names.push_back(name); });
   std::sort(names.begin(), names.end());
   return names;
 }

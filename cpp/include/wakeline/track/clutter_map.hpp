@@ -139,9 +139,8 @@ class ClutterMap {
 
   /// What is left of the plots of a target.
   [[nodiscard]] double faded(const LearnedPlots& learned, double time_s) const noexcept {
-    return learned.plots > 0.0
-               ? learned.plots * fading_.after(std::fabs(time_s - learned.time_s))
-               : 0.0;
+    return learned.plots > 0.0 ? learned.plots * fading_.after(std::fabs(time_s - learned.time_s))
+                               : 0.0;
   }
 
   /// What is left of a plot of the epoch.

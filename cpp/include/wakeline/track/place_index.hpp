@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "wakeline/track/plane_slices.hpp"
 #include "wakeline/track/plane_index.hpp"
+#include "wakeline/track/plane_slices.hpp"
 
 namespace wakeline {
 
@@ -59,10 +59,10 @@ class PlaceIndex {
     std::array<double, kLayers> reach_of;
     for (std::size_t k = 0; k < kLayers; ++k)
       reach_of[k] = largest_m2_[k] > kNone ? reach_m(largest_m2_[k]) : -1.0;
-    if (is_few())
-      return slices_.for_each_nearest(position, reach_of, most, function);
+    if (is_few()) return slices_.for_each_nearest(position, reach_of, most, function);
     for (std::size_t k = 0; k < kLayers; ++k)
-      if (largest_m2_[k] > kNone) layers_[k].for_each_nearest(position, reach_of[k], most, function);
+      if (largest_m2_[k] > kNone)
+        layers_[k].for_each_nearest(position, reach_of[k], most, function);
   }
 
   /// The same for the elements of a vector by these names, which need not be in the cache: they are

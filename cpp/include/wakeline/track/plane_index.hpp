@@ -19,10 +19,10 @@ namespace wakeline {
 
 /// Points of the plane, found by where they are.
 ///
-/// They lie in slices. Where these are crowded, with all in a harbour but one far off, every √n of n
-/// points, from south to north, make a strip, and each strip is sorted from west to east: a search
-/// for the few points near a position takes about log n steps, and sorting n log n. Memory is taken
-/// by `reserve`.
+/// They lie in slices. Where these are crowded, with all in a harbour but one far off, every √n of
+/// n points, from south to north, make a strip, and each strip is sorted from west to east: a
+/// search for the few points near a position takes about log n steps, and sorting n log n. Memory
+/// is taken by `reserve`.
 class PlaneIndex {
  public:
   /// Takes memory for so many points.
@@ -115,7 +115,8 @@ class PlaneIndex {
     const std::ptrdiff_t middle = (first + last) / 2;
     std::nth_element(points_.begin() + first * per_strip_, points_.begin() + middle * per_strip_,
                      points_.begin() + strip_end(last - 1), [](const Place& a, const Place& b) {
-                       return a.position[0] < b.position[0] || (a.position[0] == b.position[0] && a.name < b.name);
+                       return a.position[0] < b.position[0] ||
+                              (a.position[0] == b.position[0] && a.name < b.name);
                      });
     part(first, middle);
     part(middle, last);
@@ -141,11 +142,13 @@ class PlaneIndex {
     for (; strip < strips && south_m_[at(strip)] <= north; ++strip) {
       const auto end = points_.begin() + strip_end(strip);
       const auto begin = points_.begin() + strip * per_strip_;
-      auto point = first_not_below(begin, end - begin, west, [](const Place& p) { return p.position[1]; });
+      auto point =
+          first_not_below(begin, end - begin, west, [](const Place& p) { return p.position[1]; });
       for (; point != end && point->position[1] <= east; ++point) {
         if (count == std::ssize(names)) return std::numeric_limits<std::ptrdiff_t>::max();
         names[at(count)] = point->name;
-        count += std::ptrdiff_t{point->position[0] >= south} & std::ptrdiff_t{point->position[0] <= north};
+        count += std::ptrdiff_t{point->position[0] >= south} &
+                 std::ptrdiff_t{point->position[0] <= north};
       }
     }
     return count;
@@ -158,7 +161,8 @@ class PlaneIndex {
                    const Function& function) const {
     const auto begin = points_.begin() + strip * per_strip_;
     const auto end = points_.begin() + strip_end(strip);
-    auto right = first_not_below(begin, end - begin, east_m, [](const Place& p) { return p.position[1]; });
+    auto right =
+        first_not_below(begin, end - begin, east_m, [](const Place& p) { return p.position[1]; });
     auto left = right;
     while (right != end || left != begin) {
       const double right_m = right != end ? right->position[1] - east_m : kNowhere;
