@@ -67,6 +67,43 @@ TEST(ClutterMap, KnowsThePartOfATargetsOwnPlots) {
             0.0);
 }
 
+TEST(ClutterMap, CountsTheSameFromAnyTimeOn) {
+  const auto density_after = [](double begin_s) {
+    ClutterMap map(kCell, kMemory);
+    for (const double time_s : {0.0, 100.0, 130.0}) map.add({50.0, 50.0}, begin_s + time_s, 1.0);
+    return map.density({50.0, 50.0}, begin_s + 150.0, kPeriod);
+  };
+  const double expected = density_after(0.0);
+  for (const double begin_s : {-1e9, -4000.0, -70.0, 5.9e3, 1.7e9})
+    EXPECT_NEAR(density_after(begin_s), expected, 1e-6 * expected);
+}
+
+TEST(ClutterMap, ForgetsOverALongPause) {
+  ClutterMap map(kCell, kMemory);
+  map.add({50.0, 50.0}, 0.0, 1.0);
+  map.add({5000.0, 50.0}, 150.0 * kMemory, 1.0);
+  const double later_s = 150.0 * kMemory + 10.0;
+  EXPECT_LT(map.density({50.0, 50.0}, later_s, kPeriod), 1e-40);
+  ClutterMap fresh(kCell, kMemory);
+  fresh.add({5000.0, 50.0}, 150.0 * kMemory, 1.0);
+  EXPECT_EQ(map.density({5000.0, 50.0}, later_s, kPeriod),
+            fresh.density({5000.0, 50.0}, later_s, kPeriod));
+}
+
+// Sectors ask for a period ago, when the plots of the last sector had not come.
+TEST(ClutterMap, NoPlotCountsForMuchMoreThanWhenItCame) {
+  for (const double memory_s : {0.001, 1.0, 60.0}) {
+    ClutterMap map(kCell, memory_s);
+    map.add({50.0, 50.0}, 100.0, 1.0);
+    LearnedPlots learned;
+    map.remember({50.0, 50.0}, 100.0, 1.0, learned);
+    const double when_it_came = map.density({50.0, 50.0}, 100.0, kPeriod);
+    const double before = map.density({50.0, 50.0}, 97.5, kPeriod);
+    EXPECT_LE(before, 1.2 * when_it_came);
+    EXPECT_NEAR(map.density_of(learned, {50.0, 50.0}, 97.5, kPeriod), before, 1e-12 * before);
+  }
+}
+
 TEST(ClutterMap, FadesWithItsMemory) {
   ClutterMap map(kCell, kMemory);
   map.add({50.0, 50.0}, 10.0, 1.0);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "support/draw.hpp"
@@ -48,7 +49,7 @@ TEST(PlaceIndex, FindsAllThatReachAndLittleMore) {
       places.push_back(
           {4000.0 * draw.normals<2>(), std::pow(10.0, draw.uniform(0.0, k % 2 == 0 ? 4.0 : 10.0))});
       if (k % 7 == 3) places[std::size_t(k)].position = places[std::size_t(k) - 1].position;
-      if (k == 77) places[std::size_t(k)].position *= 1e9;  // at the end of the world
+      if (k == 377) places[std::size_t(k)].position *= 1e9;  // at the end of the world
     }
     places[0].variance_m2 = 0.0;
     const PlaceIndex index = index_of(places);

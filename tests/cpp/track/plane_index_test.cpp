@@ -71,6 +71,41 @@ TEST(PlaneIndex, FindsWhatLookingAtEveryPointFinds) {
   }
 }
 
+TEST(PlaneIndex, FindsPointsThatAreSpreadEvenly) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-2000.0, 2000.0);
+  for (const std::size_t size : {300u, 1500u, 4000u}) {
+    std::vector<Place> points;
+    for (std::size_t k = 0; k < size; ++k) points.emplace_back(uniform(random), uniform(random));
+    const PlaneIndex index = index_of_points(points);
+    for (int k = 0; k < 200; ++k) {
+      const Place place(1.1 * uniform(random), 1.1 * uniform(random));
+      std::vector<int> names = found_nearest(index, place, 200.0);
+      std::sort(names.begin(), names.end());
+      EXPECT_EQ(names, near(points, place, 200.0));
+    }
+  }
+}
+
+TEST(PlaneIndex, OfManyInSlicesNoneLeftOutIsNearer) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> uniform(-300.0, 300.0);
+  std::vector<Place> points;
+  for (int k = 0; k < 1500; ++k) points.emplace_back(uniform(random), uniform(random));
+  const PlaneIndex index = index_of_points(points);
+  for (const int most : {1, 32, PlaneSlices::kMostNear}) {
+    const Place place(uniform(random), uniform(random));
+    std::vector<double> apart_m, found_m;
+    for (const Place& point : points) apart_m.push_back((point - place).cwiseAbs().maxCoeff());
+    for (const int name : found_nearest(index, place, 1e9, most))
+      found_m.push_back(apart_m[static_cast<std::size_t>(name)]);
+    std::sort(apart_m.begin(), apart_m.end());
+    std::sort(found_m.begin(), found_m.end());
+    apart_m.resize(static_cast<std::size_t>(most));
+    EXPECT_EQ(found_m, apart_m);
+  }
+}
+
 TEST(PlaneIndex, TheNearestOfAGridAreNear) {
   std::vector<Place> points;
   for (int k = 0; k < 2500; ++k) points.emplace_back(k / 50, k % 50);

@@ -18,7 +18,7 @@ namespace wakeline {
 
 namespace detail {
 
-/// exp(-dt / memory), remembered for the few steps between scans that come up again and again.
+/// exp(-dt / memory), remembered for steps that many plots of a scan have in common.
 class Fading {
  public:
   explicit Fading(double memory_s) : memory_s_(memory_s) {}
@@ -80,7 +80,7 @@ class ClutterMap {
       if (cell.north == corner.north && cell.east == corner.east)
         plots += corner.share * cell.plots;
     }
-    return per_m2_and_scan(plots > 0.0 ? plots * faded_at(time_s) : 0.0, period_s);
+    return per_m2_and_scan(plots > 0.0 ? plots * faded_at(asked_s(time_s)) : 0.0, period_s);
   }
 
   /// The part of that density that these plots are.
@@ -89,7 +89,7 @@ class ClutterMap {
     if (!enabled() || learned.plots == 0.0) return 0.0;
     const double shares = shared(cells_along(position[0]), cells_along(learned.position[0])) *
                           shared(cells_along(position[1]), cells_along(learned.position[1]));
-    return per_m2_and_scan(shares * faded(learned, time_s), period_s);
+    return per_m2_and_scan(shares * faded(learned, asked_s(time_s)), period_s);
   }
 
   /// Adds a plot that `add` learns to those of its target.
@@ -102,6 +102,7 @@ class ClutterMap {
   void add(const Vec<double, 2>& position, double time_s, double weight) noexcept {
     if (!enabled()) return;
     if (std::abs(time_s - epoch_s_) > kEpochs * memory_s_) begin_epoch(time_s);
+    latest_s_ = std::max(latest_s_, time_s);
     const double of_epoch = weight / faded_at(time_s);
     for (const Corner& corner : corners(position)) {
       Cell& cell = cells_[place(corner)];
@@ -117,6 +118,7 @@ class ClutterMap {
     const std::size_t size = cells_.size();
     fields(cells_, size);
     fields(epoch_s_);
+    fields(latest_s_);
     if (cells_.size() == size) return;
     cells_.resize(size);
     fields.fail();
@@ -139,8 +141,7 @@ class ClutterMap {
 
   /// What is left of the plots of a target.
   [[nodiscard]] double faded(const LearnedPlots& learned, double time_s) const noexcept {
-    return learned.plots > 0.0 ? learned.plots * fading_.after(std::fabs(time_s - learned.time_s))
-                               : 0.0;
+    return learned.plots > 0.0 ? learned.plots * fading_.after(time_s - learned.time_s) : 0.0;
   }
 
   /// What is left of a plot of the epoch.
@@ -150,9 +151,15 @@ class ClutterMap {
 
   /// Counts the plots of all cells as of another epoch.
   void begin_epoch(double time_s) noexcept {
-    const double factor = time_s > epoch_s_ ? faded_at(time_s) : 1.0;
+    const double factor = time_s > epoch_s_ ? faded_at(time_s) : 0.0;
     for (Cell& cell : cells_) cell.plots *= factor;
-    epoch_s_ = time_s;
+    epoch_s_ = latest_s_ = time_s;
+  }
+
+  /// A time to ask for: before the last plot that was learned, none counts for much more than it
+  /// did then.
+  [[nodiscard]] double asked_s(double time_s) const noexcept {
+    return std::max(time_s, latest_s_ - 0.1 * memory_s_);
   }
 
   /// The density that faded plots in one cell mean.
@@ -206,6 +213,7 @@ class ClutterMap {
   double cell_m_;
   double memory_s_;
   double epoch_s_ = 0.0;
+  double latest_s_ = -std::numeric_limits<double>::infinity();  ///< of the plots learned
   mutable detail::Fading fading_;  // what it remembers it would find again
   std::vector<Cell> cells_;
 };

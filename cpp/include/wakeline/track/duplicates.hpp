@@ -176,7 +176,7 @@ class Duplicates {
       return std::sqrt(reach_m2(widest_m2(track) + other_m2)) + way_m_;
     };
     bool found = false;
-    positions_.for_each_nearest(track.position(), reach, kMostNear, [&](int slot) {
+    positions_.for_each_nearest(track.position(), reach, PlaneSlices::kMostNear, [&](int slot) {
       const Track& other = tracks.at(slot);
       if (found || &other == &track || ends_[static_cast<std::size_t>(slot)] != 0 ||
           !is_senior(other, track))
@@ -194,8 +194,6 @@ class Duplicates {
     });
     return found;
   }
-
-  static constexpr int kMostNear = 128;  ///< tracks that one is compared with
 
   double longest_s_ = 0.0;  ///< between the times of two tracks that are compared
   double distance_;

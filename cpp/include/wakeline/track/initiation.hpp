@@ -43,9 +43,9 @@ class FreePlots {
     plots_.reserve(capacity_);
   }
 
-  /// Calls `f(earlier)` for the plots, at most `kMostNear` nearest ones, that a target under the
-  /// speed limit can have given in one of the two turns before, by the angle of the beam or by
-  /// time, and at most `longest_s` before it gave `later`.
+  /// Calls `f(earlier)` for the plots, at most `kMostNear` of a layer of the index, that a target
+  /// under the speed limit can have given in one of the two turns before, by the angle of the beam
+  /// or by time, and at most `longest_s` before it gave `later`.
   template <class Function>
   void for_each_before(const ScanPlot& later, double max_speed_mps, double period_s, double sigmas,
                        double longest_s, Function&& function) const {

@@ -43,16 +43,17 @@ class PlaceIndex {
 
   /// Sorts the places; to be called when all are there.
   void sort() noexcept {
-    if (is_few()) return slices_.lay_out(places_);
     for (PlaneIndex& layer : layers_) layer.clear();
+    if (is_few()) return slices_.lay_out(places_);
+    slices_.clear();
     for (const Place& place : places_)
       layers_[static_cast<std::size_t>(place.layer)].add(place.position, place.name);
     for (PlaneIndex& layer : layers_) layer.sort();
   }
 
-  /// Calls `f(name)` for the places in a square about a position, at most so many of a layer, about
-  /// the nearest: `reach_m(variance)` is its half side for places of at most that variance. Where
-  /// all is crowded on one spot, a search takes no longer than elsewhere.
+  /// Calls `f(name)` for the places in a square about a position, at most so many of a layer or, of
+  /// few places, of all layers, about the nearest: `reach_m(variance)` is its half side for places
+  /// of at most that variance.
   template <class Reach, class Function>
   void for_each_nearest(const Vec<double, 2>& position, const Reach& reach_m, int most,
                         Function&& function) const {
@@ -70,6 +71,7 @@ class PlaceIndex {
   template <int kMost, class Element, class Reach, class Function>
   void for_each_nearest_of(const std::vector<Element>& elements, const Vec<double, 2>& position,
                            const Reach& reach_m, Function&& function) const {
+    static_assert(kMost <= PlaneSlices::kMostNear);
     constexpr std::size_t kLine = 64;  // bytes of the cache
     std::array<int, kLayers * kMost> found;
     std::size_t count = 0;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <span>
@@ -19,21 +18,22 @@ namespace wakeline {
 
 /// Points of the plane, found by where they are.
 ///
-/// They lie in slices. Where these are crowded, with all in a harbour but one far off, every √n of
-/// n points, from south to north, make a strip, and each strip is sorted from west to east: a
-/// search for the few points near a position takes about log n steps, and sorting n log n. Memory
-/// is taken by `reserve`.
+/// They lie in slices. Many of them, and those that are crowded in some slices, as with all in a
+/// harbour but one far off, lie in strips instead: every √n of n points from south to north, sorted
+/// from west to east, so that a search for the few points near a position takes about log n steps
+/// for any distribution. Sorting takes n log n. Memory is taken by `reserve`.
 class PlaneIndex {
  public:
   /// Takes memory for so many points.
   void reserve(int capacity) {
     const auto size = static_cast<std::size_t>(capacity);
     points_.reserve(size);
-    slices_.reserve(capacity);
+    slices_.reserve(std::min(capacity, PlaneSlices::kMost));
     south_m_.reserve(static_cast<std::size_t>(std::sqrt(double(capacity))) + 2);
   }
 
   void clear() noexcept {
+    slices_.clear();
     points_.clear();
     south_m_.clear();
   }
@@ -45,8 +45,11 @@ class PlaneIndex {
 
   /// Sorts the points; to be called when all are there.
   void sort() noexcept {
-    slices_.lay_out(points_);
-    if (!slices_.is_crowded()) return;
+    if (points_.size() <= std::size_t{PlaneSlices::kMost}) {
+      slices_.lay_out(points_);
+      if (!slices_.is_crowded()) return;
+      slices_.clear();
+    }
     const std::ptrdiff_t size = std::ssize(points_);
     per_strip_ = static_cast<std::ptrdiff_t>(std::ceil(std::sqrt(double(size))));
     part(0, (size + per_strip_ - 1) / per_strip_);

@@ -25,10 +25,11 @@ struct Place {
 /// Points of the plane in slices of one width, across the axis where they are farther apart.
 ///
 /// Laying out takes no sorting. A search looks at all points in the slices that it reaches, without
-/// a branch for each, which a processor would guess wrong: few, unless the points are crowded in
-/// some of the slices. Memory is taken by `reserve`.
+/// a branch for each, which a processor would guess wrong: few, unless it reaches far or the points
+/// are crowded in some of the slices. Memory is taken by `reserve`.
 class PlaneSlices {
  public:
+  static constexpr int kMost = 1600;     ///< points: a search may have to look at all of them
   static constexpr int kMostNear = 128;  ///< points that a search can find
 
   void reserve(int capacity) {
@@ -40,6 +41,8 @@ class PlaneSlices {
     begin_.reserve(slices_of(size) + 1);
     next_.reserve(slices_of(size) + 1);
   }
+
+  void clear() noexcept { lay_out({}); }
 
   void lay_out(std::span<const Place> places) noexcept {
     constexpr double kNowhere = std::numeric_limits<double>::infinity();
@@ -70,11 +73,9 @@ class PlaneSlices {
     }
   }
 
-  /// Whether a search looks at many: the slice of a point has many others in the mean, or there are
-  /// so many slices.
+  /// Whether the slice of a point has many others in the mean.
   [[nodiscard]] bool is_crowded() const noexcept {
-    constexpr std::size_t kMany = 24, kMost = 3000;
-    if (name_.size() > kMost) return true;
+    constexpr std::size_t kMany = 24;
     std::size_t others = 0;
     for (std::size_t k = 1; k < begin_.size(); ++k) {
       const std::size_t points = begin_[k] - begin_[k - 1];
@@ -89,10 +90,12 @@ class PlaneSlices {
   void for_each_nearest(const Vec<double, 2>& position, std::span<const double> reach_m, int most,
                         Function&& function) const {
     if (name_.empty()) return;
+    most = std::min(most, kMostNear);
     const double along_m = position[along_], across_m = position[1 - along_];
     const double widest_m = *std::max_element(reach_m.begin(), reach_m.end());
     std::array<std::size_t, 2 * std::size_t{kMostNear}> found;
     std::size_t count = 0;
+    double farthest_m = std::numeric_limits<double>::infinity();  // of the nearest so far
     const auto keep_nearest = [&] {
       const auto apart_m = [&](std::size_t k) {
         return std::max(std::abs(along_m_[k] - along_m), std::abs(across_m_[k] - across_m));
@@ -100,14 +103,15 @@ class PlaneSlices {
       std::nth_element(found.begin(), found.begin() + most, found.begin() + count,
                        [&](std::size_t a, std::size_t b) { return apart_m(a) < apart_m(b); });
       count = static_cast<std::size_t>(most);
+      farthest_m = apart_m(found[count]);
     };
     const std::size_t end = begin_[slice_of(along_m + widest_m) + 1];
     for (std::size_t k = begin_[slice_of(along_m - widest_m)]; k < end; ++k) {
       if (count == found.size()) keep_nearest();
-      const double reach_of_layer_m = reach_m[static_cast<std::size_t>(layer_[k])];
+      const double within_m = std::min(reach_m[static_cast<std::size_t>(layer_[k])], farthest_m);
       found[count] = k;
-      count += std::size_t{std::abs(along_m_[k] - along_m) <= reach_of_layer_m} &
-               std::size_t{std::abs(across_m_[k] - across_m) <= reach_of_layer_m};
+      count += std::size_t{std::abs(along_m_[k] - along_m) <= within_m} &
+               std::size_t{std::abs(across_m_[k] - across_m) <= within_m};
     }
     if (count > static_cast<std::size_t>(most)) keep_nearest();
     for (std::size_t k = 0; k < count; ++k) function(name_[found[k]]);

@@ -118,7 +118,7 @@ class ScanPlots {
 
   /// Calls `f(index)` for the plots in a square about a position: `reach_m(variance_m2)` is its
   /// half side for plots whose covariance has at most that trace. Of more than `kMostNear` plots
-  /// that are known about as well, for the nearest.
+  /// of a layer of the index, for the nearest.
   template <class Reach, class Function>
   void for_each_near(const Vec<double, 2>& position, const Reach& reach_m,
                      Function&& function) const {
@@ -146,7 +146,7 @@ class ScanPlots {
   }
 
  private:
-  static constexpr int kMostNear = 128;
+  static constexpr int kMostNear = PlaneSlices::kMostNear;
 
   std::vector<ScanPlot> plots_;
   PlaceIndex index_;
