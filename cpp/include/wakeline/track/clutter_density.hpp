@@ -29,7 +29,7 @@ class ClutterDensity {
   /// Evaluates the density at all plots of a scan, `dt_s` after the scan before.
   void evaluate(const ScanPlots& plots, double dt_s, double period_s) noexcept {
     // The map as it was when it had learned the scan before: a period later it has faded by one.
-    learned_s_ = plots.scan_s() - std::min(dt_s, period_s);
+    learned_s_ = map_.no_sooner_s(plots.scan_s() - std::min(dt_s, period_s));
     period_s_ = period_s;
     mapped_per_m2_.clear();
     for (const ScanPlot& plot : plots)

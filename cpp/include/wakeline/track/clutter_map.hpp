@@ -69,6 +69,12 @@ class ClutterMap {
 
   [[nodiscard]] bool enabled() const noexcept { return cell_m_ > 0.0; }
 
+  /// A time, or a later one at which no plot that was learned counts for much more than when it
+  /// came.
+  [[nodiscard]] double no_sooner_s(double time_s) const noexcept {
+    return std::max(time_s, latest_s_ - 0.1 * memory_s_);
+  }
+
   /// False plots per m² and scan about a position, for scans `period_s` apart, of which the last
   /// was at `time_s`.
   [[nodiscard]] double density(const Vec<double, 2>& position, double time_s,
@@ -80,7 +86,7 @@ class ClutterMap {
       if (cell.north == corner.north && cell.east == corner.east)
         plots += corner.share * cell.plots;
     }
-    return per_m2_and_scan(plots > 0.0 ? plots * faded_at(asked_s(time_s)) : 0.0, period_s);
+    return per_m2_and_scan(plots > 0.0 ? plots * faded_at(time_s) : 0.0, period_s);
   }
 
   /// The part of that density that these plots are.
@@ -89,7 +95,7 @@ class ClutterMap {
     if (!enabled() || learned.plots == 0.0) return 0.0;
     const double shares = shared(cells_along(position[0]), cells_along(learned.position[0])) *
                           shared(cells_along(position[1]), cells_along(learned.position[1]));
-    return per_m2_and_scan(shares * faded(learned, asked_s(time_s)), period_s);
+    return per_m2_and_scan(shares * faded(learned, time_s), period_s);
   }
 
   /// Adds a plot that `add` learns to those of its target.
@@ -154,12 +160,6 @@ class ClutterMap {
     const double factor = time_s > epoch_s_ ? faded_at(time_s) : 0.0;
     for (Cell& cell : cells_) cell.plots *= factor;
     epoch_s_ = latest_s_ = time_s;
-  }
-
-  /// A time to ask for: before the last plot that was learned, none counts for much more than it
-  /// did then.
-  [[nodiscard]] double asked_s(double time_s) const noexcept {
-    return std::max(time_s, latest_s_ - 0.1 * memory_s_);
   }
 
   /// The density that faded plots in one cell mean.
