@@ -24,7 +24,7 @@ class PlaceIndex {
     places_.reserve(static_cast<std::size_t>(capacity));
     slices_.reserve(int{kFew});
     for (PlaneIndex& layer : layers_) layer.reserve(capacity);
-    largest_m2_.fill(kNone);
+    clear();
   }
 
   void clear() noexcept {

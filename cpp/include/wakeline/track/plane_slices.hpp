@@ -38,11 +38,16 @@ class PlaneSlices {
     across_m_.reserve(size);
     layer_.reserve(size);
     name_.reserve(size);
-    begin_.reserve(slices_of(size) + 1);
-    next_.reserve(slices_of(size) + 1);
+    begin_.reserve(slices_of(size) + 2);
   }
 
-  void clear() noexcept { lay_out({}); }
+  void clear() noexcept {
+    along_m_.clear();
+    across_m_.clear();
+    layer_.clear();
+    name_.clear();
+    begin_.clear();
+  }
 
   void lay_out(std::span<const Place> places) noexcept {
     constexpr double kNowhere = std::numeric_limits<double>::infinity();
@@ -56,16 +61,16 @@ class PlaneSlices {
     last_ = static_cast<double>(slices_of(places.size()) - 1);
     first_m_ = least[along_];
     slices_per_m_ = range_m[along_] > 0.0 ? (last_ + 1.0) / range_m[along_] : 0.0;
-    begin_.assign(slices_of(places.size()) + 1, 0);
-    for (const Place& place : places) ++begin_[slice_of(place.position[along_]) + 1];
+    // While points come, `begin_[k + 1]` is where the next one of slice k goes; then where it ends.
+    begin_.assign(slices_of(places.size()) + 2, 0);
+    for (const Place& place : places) ++begin_[slice_of(place.position[along_]) + 2];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    next_ = begin_;
     along_m_.resize(places.size());
     across_m_.resize(places.size());
     layer_.resize(places.size());
     name_.resize(places.size());
     for (const Place& place : places) {
-      const std::size_t k = next_[slice_of(place.position[along_])]++;
+      const std::size_t k = begin_[slice_of(place.position[along_]) + 1]++;
       along_m_[k] = place.position[along_];
       across_m_[k] = place.position[1 - along_];
       layer_[k] = place.layer;
@@ -129,7 +134,6 @@ class PlaneSlices {
   std::vector<double> along_m_, across_m_;  ///< of the points, slice by slice
   std::vector<int> layer_, name_;
   std::vector<std::size_t> begin_;  ///< of the slices, and the end
-  std::vector<std::size_t> next_;   ///< place of the next point of a slice
   int along_ = 0;                   ///< the axis across which the slices are: 0 north, 1 east
   double first_m_ = 0.0, slices_per_m_ = 0.0, last_ = 0.0;
 };
