@@ -88,6 +88,31 @@ template <class Bank, class Weights>
   return decltype(sum)(sum);  // a copy, so that the sum stays in registers
 }
 
+namespace detail {
+
+/// `std::tuple<std::array<A, 2>, std::array<B, 1>>` of A, A, B.
+template <class Done, class... Types>
+struct RunsOf;
+
+template <class... Done>
+struct RunsOf<std::tuple<Done...>> {
+  using Type = std::tuple<Done...>;
+};
+
+template <class... Done, class First, class... Others>
+struct RunsOf<std::tuple<Done...>, First, Others...>
+    : RunsOf<std::tuple<Done...>, std::array<First, 1>, Others...> {};
+
+template <class... Done, class One, std::size_t N, class... Others>
+struct RunsOf<std::tuple<Done...>, std::array<One, N>, One, Others...>
+    : RunsOf<std::tuple<Done...>, std::array<One, N + 1>, Others...> {};
+
+template <class... Done, class One, std::size_t N, class... Others>
+struct RunsOf<std::tuple<Done...>, std::array<One, N>, Others...>
+    : RunsOf<std::tuple<Done..., std::array<One, N>>, Others...> {};
+
+}  // namespace detail
+
 /// Filters composed at compile time, of any kinds and state sizes, each with its belief before a
 /// step.
 ///
@@ -119,7 +144,8 @@ class FilterBank {
       return kKinematics;
   }();
 
-  explicit FilterBank(const Filters&... filters) : slots_{Slot<Filters>{filters, {}}...} {}
+  explicit FilterBank(const Filters&... filters)
+      : runs_(made_runs(std::tie(filters...), std::make_index_sequence<kRuns>{})) {}
 
   static constexpr int size() noexcept { return kModels; }
 
@@ -154,11 +180,11 @@ class FilterBank {
 
   template <int Index>
   const auto& get() const noexcept {
-    return std::get<Index>(slots_).filter;
+    return slot<Index, 0>(*this).filter;
   }
   template <int Index>
   auto& get() noexcept {
-    return std::get<Index>(slots_).filter;
+    return slot<Index, 0>(*this).filter;
   }
 
  private:
@@ -168,23 +194,52 @@ class FilterBank {
     StateBelief<Filter::kComponents, typename Filter::Scalar> before;
   };
 
-  template <class Self, class Function>
-  static void visit(Self& self, Function&& function) noexcept {
-    if constexpr (kAlike) {
-      for (int k = 0; k < kModels; ++k) function(k, self.slots_[static_cast<std::size_t>(k)]);
-    } else {
-      [&]<std::size_t... Index>(std::index_sequence<Index...>) {
-        (function(static_cast<int>(Index), std::get<Index>(self.slots_)), ...);
-      }
-      (std::make_index_sequence<sizeof...(Filters)>{});
-    }
+  // The step of a run is a loop: unrolled, the steps of all filters exceed the instruction cache.
+  using Runs = typename detail::RunsOf<std::tuple<>, Slot<Filters>...>::Type;
+  static constexpr int kRuns = int{std::tuple_size_v<Runs>};
+
+  template <std::size_t Run>
+  static constexpr std::size_t kSize = std::tuple_size_v<std::tuple_element_t<Run, Runs>>;
+
+  template <std::size_t... Run>
+  static Runs made_runs(const std::tuple<const Filters&...>& filters, std::index_sequence<Run...>) {
+    const auto sizes = []<std::size_t... Before>(std::index_sequence<Before...>) {
+      return (std::size_t{0} + ... + kSize<Before>);
+    };
+    return Runs(made_run<sizes(std::make_index_sequence<Run>{})>(
+        filters, std::make_index_sequence<kSize<Run>>{})...);
   }
 
-  // Filters of one kind are visited in a loop: the unrolled step of all of them exceeds the
-  // instruction cache.
-  using First = std::tuple_element_t<0, std::tuple<Filters...>>;
-  static constexpr bool kAlike = (std::is_same_v<First, Filters> && ...);
-  std::conditional_t<kAlike, std::array<Slot<First>, kModels>, std::tuple<Slot<Filters>...>> slots_;
+  template <std::size_t First, std::size_t... Index>
+  static auto made_run(const std::tuple<const Filters&...>& filters,
+                       std::index_sequence<Index...>) {
+    return std::array{Slot<std::remove_cvref_t<decltype(std::get<First + Index>(filters))>>{
+        std::get<First + Index>(filters), {}}...};
+  }
+
+  template <class Self, class Function>
+  static void visit(Self& self, const Function& function) noexcept {
+    std::apply(
+        [&](auto&... runs) {
+          int k = 0;
+          const auto visit_run = [&](auto& run) {
+            for (auto& slot : run) function(k++, slot);
+          };
+          (visit_run(runs), ...);
+        },
+        self.runs_);
+  }
+
+  template <std::size_t Index, std::size_t Run, class Self>
+  static auto& slot(Self& self) noexcept {
+    auto& run = std::get<Run>(self.runs_);
+    if constexpr (Index < kSize<Run>)
+      return run[Index];
+    else
+      return slot<Index - kSize<Run>, Run + 1>(self);
+  }
+
+  Runs runs_;
 };
 
 }  // namespace wakeline

@@ -290,7 +290,7 @@ class SideBySide<ModelGroupImm<CoreBank, AllBank>> {
   }
 
  private:
-  static constexpr std::size_t kTogether = 32;  ///< steps that are sorted together
+  static constexpr std::size_t kTogether = 64;  ///< steps that are sorted together
 
   template <class Step, class Perform>
   void apart(std::span<Step> steps, const Perform& perform) noexcept {

@@ -42,8 +42,8 @@ struct GateStrip {
     constexpr double kRounding = 1.0 + 1e-6;
     const double along = direction.dot(z - position);
     const double outside = std::max(along - to, from - along);
-    return outside > 0.0 &&
-           outside * outside > kRounding * threshold * (variance + direction.dot(r * direction));
+    return (outside > 0.0) &
+           (outside * outside > kRounding * threshold * (variance + direction.dot(r * direction)));
   }
 };
 

@@ -32,7 +32,8 @@ class TrackGate {
  public:
   explicit TrackGate(const TrackerConfig& config)
       : threshold_(EllipsoidalGate<2>(ChiSquareGate{config.gate_probability}).threshold()),
-        outlier_variance_(config.outlier_variance()) {
+        outlier_variance_(config.outlier_variance()),
+        in_strip_(static_cast<std::size_t>(config.max_plots)) {
     validated_.reserve(static_cast<std::size_t>(config.max_plots));
   }
 
@@ -54,19 +55,22 @@ class TrackGate {
     };
     // In range plots are precise, so that most others are outside of the gate in this direction.
     const GateStrip strip = modes.along(track.position() - plots.antenna(), track.position());
+    std::size_t count = 0;
     plots.for_each_near(track.position(), reach_m, [&](int index) {
       const ScanPlot& plot = plots[index];
+      in_strip_[count] = index;  // without a branch, which a processor would often guess wrong
+      count += std::size_t{
+          !strip.excludes(alignment.moved(plot), generous_r(plot, alignment), threshold_)};
+    });
+    for (const int index : std::span(in_strip_).first(count)) {
+      const ScanPlot& plot = plots[index];
+      if (!modes.gate(alignment.moved(plot), generous_r(plot, alignment), threshold_)) continue;
       const Mat<double, 2, 2> added_m2 = alignment.added_m2(plot);
-      const Mat<double, 2, 2> generous_r =
-          kElsewhere * outlier_variance_ * plot.position.covariance + added_m2;
-      const Vec<double, 2> moved_m = alignment.moved(plot);
-      if (strip.excludes(moved_m, generous_r, threshold_)) return;
-      if (!modes.gate(moved_m, generous_r, threshold_)) return;
       const Gaussian<2> there = alignment.at_prediction(plot);
       const ValidatedPlot moved{index, there.mean, there.covariance + added_m2,
                                 outlier_variance_ * there.covariance + added_m2};
       if (modes.gate(moved.z, moved.outlier_r, threshold_)) validated_.push_back(moved);
-    });
+    }
     return validated_;
   }
 
@@ -78,8 +82,15 @@ class TrackGate {
   /// far outside are left out at less expense.
   static constexpr double kElsewhere = 1.5;
 
+  /// The covariance of a plot as an outlier, at most.
+  [[nodiscard]] Mat<double, 2, 2> generous_r(const ScanPlot& plot,
+                                             const TimeAlignment& alignment) const noexcept {
+    return kElsewhere * outlier_variance_ * plot.position.covariance + alignment.added_m2(plot);
+  }
+
   double threshold_;
   double outlier_variance_;
+  std::vector<int> in_strip_;  ///< room for all plots
   std::vector<ValidatedPlot> validated_;
 };
 
