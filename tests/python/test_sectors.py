@@ -109,6 +109,33 @@ def test_a_whole_turn_as_a_sector_gives_the_bits_of_a_scan():
     assert len(scans.tracks()) == 5
 
 
+@pytest.mark.parametrize("sectors", [1, 4, 32])
+def test_plots_are_seen_from_where_own_ship_was_at_their_times(sectors):
+    at_rest, moving = wl.Tracker(RADAR), wl.Tracker(RADAR)
+    velocity_mps = {"vnorth_mps": 12.0, "veast_mps": -7.0}
+    for k, (range_m, bearing_rad, plot_time_s) in enumerate(turns(20)):
+        seen = {"range_m": range_m, "bearing_rad": bearing_rad, "plot_time_s": plot_time_s}
+        at_rest.process(2.5 * (k + 1), **seen)
+        edges_rad = np.linspace(0.0, TURN, sectors + 1)
+        for from_rad, to_rad in itertools.pairwise(edges_rad):
+            inside = (bearing_rad >= from_rad) & (bearing_rad < to_rad)
+            time_s = 2.5 * (k + to_rad / TURN)
+            own = wl.OwnShip(north_m=12.0 * time_s, east_m=-7.0 * time_s, **velocity_mps)
+            moving.sector(
+                from_rad=from_rad,
+                to_rad=to_rad,
+                time_s=time_s,
+                own=own,
+                **{name: column[inside] for name, column in seen.items()},
+            )
+    time_s = 50.0
+    seen_from_own = moving.tracks(time_s).mean - [12.0 * time_s, 12.0, -7.0 * time_s, -7.0]
+    off = np.abs(seen_from_own[:, None] - at_rest.tracks(time_s).mean[None]).min(axis=1)
+    assert len(off) == 5
+    assert (off[:, ::2] < 3.0).all()
+    assert (off[:, 1::2] < 1.0).all()
+
+
 def test_a_track_is_there_when_the_beam_has_passed_it():
     tracker = wl.Tracker([RADAR])
     for k, (range_m, bearing_rad, plot_time_s) in enumerate(turns(20)):

@@ -20,10 +20,14 @@ double nis(Draw& draw) {
   return a * a + b * b;
 }
 
-double share_of(std::uint64_t seed, int looks, double scale) {
+/// Of looks whose NIS is so much of what is stated, each alike the one before by so much.
+double share_of(std::uint64_t seed, int looks, double scale, double alike = 0.6) {
   Draw draw(seed);
   PersistentErrors errors;
-  for (int k = 0; k < looks; ++k) errors.learn(scale * nis(draw));
+  for (int k = 0; k < looks; ++k) {
+    const double square = scale * nis(draw);
+    errors.learn(square, alike * square);
+  }
   return errors.share();
 }
 
@@ -45,6 +49,10 @@ TEST(PersistentErrors, AreWhatInnovationsDoNotShow) {
   }
 }
 
+TEST(PersistentErrors, AreNoneOfARadarThatIsBetterThanStated) {
+  for (const double shown : {0.5, 0.3, 0.1}) EXPECT_EQ(share_of(1, 500, shown, 0.0), 0.0) << shown;
+}
+
 TEST(PersistentErrors, AreWhatInnovationsShowBeyondTheStatedErrors) {
   double sum = 0.0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) sum += share_of(seed, 500, 2.0) / 50;
@@ -55,7 +63,10 @@ TEST(PersistentErrors, AreWhatInnovationsShowBeyondTheStatedErrors) {
 TEST(PersistentErrors, AreLearnedBesideOutliers) {
   Draw draw(4);
   PersistentErrors errors;
-  for (int k = 0; k < 1000; ++k) errors.learn(k % 10 == 0 ? 1e6 : 0.4 * nis(draw));
+  for (int k = 0; k < 1000; ++k) {
+    const double square = k % 10 == 0 ? 1e6 : 0.4 * nis(draw);
+    errors.learn(square, 0.6 * square);
+  }
   EXPECT_GT(errors.share(), 0.8);
   EXPECT_LT(errors.share(), 2.5);
 }

@@ -341,6 +341,48 @@ TEST(Sectors, ATargetInABlindSectorCoastsByTimeAndOthersAreUpdated) {
   });
 }
 
+/// The plots that the track of each boat has had after 20 turns in sectors, of which some are not
+/// given and whose ends are by so much before the begin of the next.
+std::vector<int> hits_in(int sectors, const std::function<bool(double turn)>& given,
+                         double gap_rad = 0.0) {
+  VesselTracker tracker = make_tracker();
+  const std::vector<Plot> plots = record(boats(), {}, 20 * kTurn, 12);
+  std::size_t next = 0;
+  for (int k = 0; k < 20 * sectors; ++k) {
+    const double from_rad = kTurn * k / sectors, to_rad = kTurn * (k + 1) / sectors;
+    const double time_s = Antenna{}.time_s(to_rad);
+    const std::size_t begin = next;
+    while (next < plots.size() && plots[next].time_s <= time_s) ++next;
+    const Sector sector{0, from_rad, to_rad - gap_rad, time_s,
+                        std::span(plots).subspan(begin, next - begin)};
+    if (!given(double(k) / sectors)) continue;
+    const ScanReport report = tracker.sector(sector);
+    EXPECT_EQ(report.status, Status::kOk);
+    EXPECT_TRUE(events_of(report, TrackEvent::kLost).empty());
+  }
+  std::vector<int> hits;
+  for (const Boat& boat : boats()) {
+    const Track* track = track_at(tracker, boat.at(20 * kPeriod_s), 80.0);
+    hits.push_back(track == nullptr ? 0 : track->hits);
+  }
+  return hits;
+}
+
+TEST(Sectors, AfterASilenceOfSomeTurnsHaveTheirPlotsUsedAsOfTurns) {
+  for (const int silent : {1, 2, 3, 5}) {
+    const auto given = [&](double turn) { return turn < 10.0 || turn >= 10.0 + silent; };
+    for (const int sectors : {2, 3, 16})
+      EXPECT_EQ(hits_in(sectors, given), hits_in(1, given)) << silent << " " << sectors;
+  }
+}
+
+TEST(Sectors, BetweenTheirFirstAndLastSweepsLeaveNoGap) {
+  const auto all = [](double) { return true; };
+  for (const int sectors : {8, 32, 64})
+    for (const double gap_rad : {1e-5, kTurn / 4096, kTurn / 720})
+      EXPECT_EQ(hits_in(sectors, all, gap_rad), hits_in(sectors, all)) << sectors << " " << gap_rad;
+}
+
 TEST(Sectors, ASilentRadarLetsTracksCoastByTime) {
   VesselTracker tracker = make_tracker();
   feed(tracker, record(boats(), {}, 20 * kTurn, 7), {}, even_ends(16, 20),

@@ -60,25 +60,37 @@ class Beam {
     swept_from_rad_ = angle_rad_ - kTurn;
   }
 
-  /// Passes a sector `dt_s` after the one before. A gap in front of it is not swept; where sectors
-  /// overlap the beam does not go back. After a silence as many turns are missed as it took.
-  void sweep(double from_rad, double width_rad, double dt_s, double period_s) noexcept {
+  /// Passes a sector `dt_s` after the one before. A gap in front of it that a vessel could be in is
+  /// not swept; where sectors overlap the beam does not go back. After a silence as many turns are
+  /// missed as it took: returns the angle of these.
+  double sweep(double from_rad, double width_rad, double dt_s, double period_s) noexcept {
     if (!running_) {
       running_ = true;
       swept_from_rad_ = angle_rad_ + compass_angle(from_rad - angle_rad_);
       angle_rad_ = swept_from_rad_ + width_rad;
-      return;
+      return 0.0;
     }
-    double ahead_rad = wrap_angle(from_rad - angle_rad_);
+    const double ahead_rad = wrap_angle(from_rad - angle_rad_);
+    double missed_rad = 0.0;
     if (std::abs(ahead_rad) > kSame_rad || dt_s > 2.0 * period_s) {
       const double turns = std::round((kTurn * dt_s / period_s - width_rad - ahead_rad) / kTurn);
-      ahead_rad += kTurn * std::max(turns, 0.0);
+      missed_rad = kTurn * std::max(turns, 0.0);
     }
-    if (ahead_rad > kSame_rad) swept_from_rad_ = angle_rad_ + ahead_rad;
-    angle_rad_ = std::max(angle_rad_, angle_rad_ + ahead_rad + width_rad);
+    const double begin_rad = angle_rad_ + ahead_rad + missed_rad;
+    if (missed_rad > 0.0 && width_rad > 0.0) resumed_rad_ = begin_rad;
+    if (begin_rad > angle_rad_ + kSeam_rad) swept_from_rad_ = begin_rad;
+    angle_rad_ = std::max(angle_rad_, begin_rad + width_rad);
+    return missed_rad;
   }
 
   [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }
+
+  /// Whether the beam is yet to pass a part of the turn, and of the gates there, since it missed
+  /// turns.
+  [[nodiscard]] bool resumes() const noexcept {
+    constexpr double kTurns = 1.25;
+    return angle_rad_ < resumed_rad_ + kTurns * kTurn;
+  }
 
   /// A bearing as an angle of the beam, the one nearest to `near_rad`.
   [[nodiscard]] static double unwrapped(double bearing_rad, double near_rad) noexcept {
@@ -99,14 +111,18 @@ class Beam {
     fields(running_);
     fields(angle_rad_);
     fields(swept_from_rad_);
+    fields(resumed_rad_);
   }
 
  private:
   static constexpr double kSame_rad = 1e-6;  ///< no antenna knows its angle better
+  /// Between the last sweep of a sector and the first of the next, or rounded: less than a beam.
+  static constexpr double kSeam_rad = 0.01;
 
   bool running_ = false;
   double angle_rad_ = 0.0;
   double swept_from_rad_ = 0.0;
+  double resumed_rad_ = -std::numeric_limits<double>::infinity();  ///< after turns that it missed
 };
 
 /// Arc tangent of a positive slope. Of a gentle one it is the slope, which takes less time and is

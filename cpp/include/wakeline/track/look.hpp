@@ -19,6 +19,12 @@ struct Look {
   int misses = 0;             ///< of this radar, in a row
   LearnedPlots learned = {};  ///< what the clutter map has learned of the target's own plots
 
+  /// The beam has missed turns of that angle.
+  void miss_turns(double missed_rad) noexcept {
+    passed_rad += missed_rad;
+    look_rad += missed_rad;
+  }
+
   void archive(Archive& fields) {
     fields(visibility);
     fields(looked_s);

@@ -18,20 +18,26 @@ namespace wakeline {
 /// wanders along the hull or a bearing is off, are in its estimate, and its covariance does not
 /// know of them. Two signs of them are learned: innovations that are smaller than the errors of the
 /// radar, which must then be elsewhere, and innovations that are larger, by which the errors are
-/// larger than stated. With the normalized innovation squared (NIS) of a plot, χ² of two degrees of
-/// freedom where all is as stated:
+/// larger than stated. Smaller ones are a sign only as far as each is like the one before: those of
+/// a radar that is better than stated are independent. With the normalized innovation squared (NIS)
+/// of a plot, χ² of two degrees of freedom where all is as stated, and the product u·u' of whitened
+/// innovations that follow each other:
 ///
-///     w = 1 / E[exp(-NIS/2)] - 1     1, and the scale of what is not an outlier
-///     m = E[min(NIS, 18)] / 2        1, and the scale of all
-///     share = (1/w - 1) if w < 0.9 - 2.3 / sqrt(n), plus (m - 1) if m > 1.05 + 2.3 / sqrt(n)
+///     w = 1 / E[exp(-NIS/2)] - 1           1, and the scale of what is not an outlier
+///     m = E[min(NIS, 18)] / 2              1, and the scale of all
+///     r = E[u·u'] / E[min(NIS, 18)]        0, and about 1 - w of errors that stay
+///     share = (1/w - 1) if w < 0.9 - 2.3 / sqrt(n) and r > (1 - w) / 2 + 1.5 / sqrt(n),
+///             plus (m - 1) if m > 1.05 + 2.3 / sqrt(n)
 ///
 /// over the last n looks, about 500 at most. The first counts what does not show against what
 /// does, as errors that wander slowly show in part. Beyond these bounds, which chance seldom
 /// passes, each sets in over a tenth.
 class PersistentErrors {
  public:
-  void learn(double nis) noexcept {
+  /// Takes the NIS of a plot of a track, and the product of its innovation and the one before.
+  void learn(double nis, double product) noexcept {
     usual_ = kMemory * usual_ + std::exp(-0.5 * nis);
+    products_ = kMemory * products_ + std::clamp(product, -kMostNis, kMostNis);
     all_ = kMemory * all_ + 0.5 * std::min(nis, kMostNis);
     looks_ = kMemory * looks_ + 1.0;
   }
@@ -41,13 +47,15 @@ class PersistentErrors {
     constexpr double kMostShare = 9.0;
     const double chance = 2.3 / std::sqrt(looks_);
     const double usual = looks_ / usual_ - 1.0, all = all_ / looks_;
-    const double fewer = (1.0 / usual - 1.0) * beyond(0.9 - chance - usual);
+    const double alike = products_ / (2.0 * all_) - (1.0 - usual) / 2 - 1.5 / std::sqrt(looks_);
+    const double fewer = (1.0 / usual - 1.0) * beyond(0.9 - chance - usual) * beyond(alike);
     const double more = (all - 1.0) * beyond(all - 1.05 - chance);
     return std::min(fewer + more, kMostShare);
   }
 
   void archive(Archive& fields) {
     fields(usual_);
+    fields(products_);
     fields(all_);
     fields(looks_);
   }
@@ -60,6 +68,7 @@ class PersistentErrors {
   static constexpr double kMostNis = 18.0;
 
   double usual_ = 0.5 * kPriorLooks;
+  double products_ = 0.0;
   double all_ = kPriorLooks;
   double looks_ = kPriorLooks;
 };

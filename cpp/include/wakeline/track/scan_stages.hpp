@@ -113,7 +113,7 @@ class ScanStages {
  private:
   static constexpr double kClockPeriods = 10.0;  ///< in which a plot of another time is in error
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
-  static constexpr std::size_t kGroup = 32;      ///< tracks that are stepped together
+  static constexpr std::size_t kGroup = 64;      ///< tracks that are stepped together
   static constexpr int kNoPlot = -1;
 
   /// Calls `f(slots)` for a few tracks at a time, which stay in the cache from stage to stage.
@@ -138,8 +138,12 @@ class ScanStages {
     double half_rad = kPi<double>;
     if (sector != nullptr) {
       const double width_rad = Beam::width_rad(sector->from_rad, sector->to_rad);
-      state().beam.sweep(sector->from_rad, width_rad, dt_s, state().radar.period_s);
+      const double missed_rad =
+          state().beam.sweep(sector->from_rad, width_rad, dt_s, state().radar.period_s);
       half_rad = width_rad / 2;
+      if (missed_rad > 0.0)
+        for (const int slot : picture_.tracks.slots())
+          look_at(picture_.tracks.at(slot)).miss_turns(missed_rad);
     } else {
       state().beam.turn();
     }
@@ -202,7 +206,7 @@ class ScanStages {
     const auto has_near = [&] { return may_wait ? plot != kNoPlot : has_plot_near(track); };
     if (!is_passed && !(has_swept && has_near())) {
       waiting_.push_back(slot);
-    } else if (has_swept && (is_covered(track) || has_near())) {
+    } else if ((has_swept && is_covered(track)) || has_near()) {
       due_.push_back(slot);
       arcs_.push_back(arc);
     } else {
@@ -364,7 +368,8 @@ class ScanStages {
     }
   }
 
-  /// Lets tracks coast by time that the beam has not passed for long.
+  /// Lets tracks coast by time that the beam has not passed for long. Where it turns again
+  /// after a silence they have no misses for that, as if it had passed them in a whole turn.
   void coast_by_time() noexcept {
     touched_.assign(due_.begin(), due_.end());
     const double period_s = picture_.longest_period_s();
@@ -386,8 +391,9 @@ class ScanStages {
     const double silent_s = picture_.scan_time_s - track.looked_s;
     if (!(silent_s > kSilentPeriods * period_s) || picture_.is_awaited(track)) return;
     const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
+    const double misses = state().beam.resumes() ? 0.0 : periods;
     if (!(picture_.scan_time_s < track.seen_until_s))
-      for (double k = 0.0; k < periods; ++k) track.count(false);
+      for (double k = 0.0; k < misses; ++k) track.count(false);
     track.looked_s += periods * period_s;
     const ExistencePrediction prediction(picture_.config, periods * period_s);
     track.existence = prediction.existence(track.existence);
@@ -395,12 +401,12 @@ class ScanStages {
       Look& look = radar.look(track);
       look.visibility = prediction.visibility(look.visibility);
       look.looked_s = std::max(look.looked_s, track.looked_s);
-      look.misses += static_cast<int>(periods);
+      look.misses += static_cast<int>(misses);
     }
     PredictionStep<Estimator> step{&picture_.estimator_at(track.slot),
                                    picture_.scan_time_s - track.time_s};
     picture_.steps.predict({&step, 1});
-    touched_.push_back(track.slot);
+    if (misses > 0.0) touched_.push_back(track.slot);
     track.nis = std::numeric_limits<double>::quiet_NaN();
     if (step.status != Status::kOk) return;
     track.time_s = picture_.scan_time_s;
@@ -620,7 +626,8 @@ class ScanStages {
     const CandidatePlot& best = candidates_of(track)[at];
     PersistentErrors& errors = state().persistent_errors;
     constexpr double kCertain = 0.7;
-    if (is_sure(track) && probabilities.of_candidate[at] > kCertain) errors.learn(track.nis);
+    if (is_sure(track) && probabilities.of_candidate[at] > kCertain)
+      errors.learn(track.nis, track.consistency.last_product());
     const ConvertedErrors& of_plot = state().plots[best.plot].errors;
     const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
     const Mat<double, 2, 2> position_m2 = position_in(track.kinematics).covariance;
