@@ -200,8 +200,11 @@ gate.)");
 Plots of vessels whose positions are known by their reports (AIS, GNSS) or by the tracks of another
 radar give the three offsets with their standard deviations, by robust weighted least squares. Each vessel's echo may have a constant
 offset from the reported position, which is estimated, too. An offset is determined only if there
-are enough matches and its standard deviation is below the limit. Reports and plots are given in
-order of time, each of either kind. Memory is bounded.
+are enough matches and its standard deviation is below the limit. Memory is bounded.
+
+A plot is compared with the reports before and after it. Reports and plots are given as they come, or
+all plots first, of which the last `max_waiting_plots` wait for reports; of a vessel only the last
+two reports are kept, so that one given long before the plots of its time is compared with none.
 
 Parameters
 ----------

@@ -147,6 +147,15 @@ ValueError
           py::arg("track_id"), py::kw_only(), py::arg("hush") = false,
           py::arg("time_s") = py::none(), "As `Tracker.drop`, at a time; default: now.")
       .def(
+          "set_radar",
+          [](PyLateWindow& late, int number, const Radar& radar,
+             const std::optional<double>& time_s) {
+            const double at_s = time_or_now(time_s);
+            late.visit_window([&](auto& window) { window.set_radar(number, radar, at_s); });
+          },
+          py::arg("number"), py::arg("radar"), py::kw_only(), py::arg("time_s") = py::none(),
+          "As `Tracker.set_radar`, at a time; default: now.")
+      .def(
           "save",
           [](PyLateWindow& late) {
             return to_bytes(late.visit_window([](auto& window) { return window.save(); }));

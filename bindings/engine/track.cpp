@@ -208,8 +208,12 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
   require(!std::isnan(Beam::width_rad(from_rad, to_rad)), "to_rad",
           "from nothing to a turn after from_rad, clockwise", to_rad);
   own.validate();
-  const std::vector<Plot> plots = plots_of(time_s, range_m, bearing_rad, plot_time_s, covariance,
-                                           [&](std::size_t) { return own; });
+  std::vector<Plot> plots = plots_of(time_s, range_m, bearing_rad, plot_time_s, covariance,
+                                     [&](std::size_t) { return own; });
+  for (Plot& plot : plots) {  // each as of its own time
+    plot.own.north_m += (plot.time_s - time_s) * own.vnorth_mps;
+    plot.own.east_m += (plot.time_s - time_s) * own.veast_mps;
+  }
   const auto hold = tracker.lock();  // the report is the tracker's memory
   require_radar(tracker, radar);
   require_time(tracker, "sector", time_s, radar);
@@ -273,8 +277,15 @@ PyReport partial(AnyTracker& tracker, const char* what, PositionPart part, int s
       part, sensor,         time_s, {values.data(), static_cast<std::size_t>(values.shape(0))},
       std,  false_per_unit, own};
   const auto hold = tracker.lock();  // the report is the tracker's memory
-  return reported(tracker, scan.values.size(), what,
-                  [&] { return tracker.visit([&](auto& one) { return one.partial(scan); }); });
+  const double last_s = std::as_const(tracker).visit([](const auto& one) { return one.time_s(); });
+  return reported(tracker, scan.values.size(), what, [&] {
+    const ScanReport report = tracker.visit([&](auto& one) { return one.partial(scan); });
+    if (report.status == Status::kNotFinite)
+      throw FilterError(std::string(what) +
+                        ": time_s must be at most 120 s after the last scan, at " +
+                        std::to_string(last_s) + ", got " + std::to_string(time_s));
+    return report;
+  });
 }
 
 /// What a mean NIS and a whiteness of so many plots are within with a probability of 0.95.
@@ -417,7 +428,8 @@ void define_track(py::module_& parent) {
           "there has been room in between; identified or identity_lost where a track is believed "
           "to "
           "be of a vessel that reports, or no longer; identity_disagrees where a report of it is "
-          "far from its track, identity_jumps where it is farther from the one before than a "
+          "far from its track, of another velocity or contradicts those before, identity_jumps "
+          "where it is farther from the one before than a "
           "vessel "
           "runs, identity_shared where two vessels report from one track")
       .def_property_readonly(
@@ -607,7 +619,7 @@ range_m, bearing_rad : (n,) arrays
 plot_time_s : float or (n,) array
     Time of each plot.
 own : OwnShip
-    At the end of the sector.
+    At the end of the sector; at the time of each plot it was where its velocity has it.
 covariance : (n, 2, 2) array, optional
     Of range and bearing of each plot, as in `process`.
 
@@ -631,8 +643,9 @@ FilterError
 
 It is of the track that its identity is believed to be, which is decided by where the reports of the
 identity are, one after the other, and of a new track where there is none near and the vessel has
-reported before. It updates the track only while they agree, so that an identity that is wrong,
-stolen or old drags no track away; events tell of it. A track that reports is kept while its vessel
+reported before. It updates the track only while they agree, and where its velocity is that at which
+its positions move; events say where not. An error below four standard deviations that does not
+change is taken for right. A track that reports is kept while its vessel
 can be silent. A report older than 120 s before the last scan, or not newer than the last one of its
 identity, and one more than 120 s ahead, changes nothing. Estimators other than `Imm` do not take
 the velocity.
@@ -801,12 +814,11 @@ ValueError
              double position_std_m, const std::optional<double>& vnorth_mps,
              const std::optional<double>& veast_mps, double velocity_std_mps) {
             require_finite("time_s", time_s);
-            const double latest_s =
-                std::as_const(tracker).visit([](const auto& one) { return one.latest_time_s(); });
-            require(
-                time_s <= latest_s, "time_s",
-                ("at most " + std::to_string(latest_s) + ", an hour after the last scan").c_str(),
-                time_s);
+            const auto [last_s, latest_s] = std::as_const(tracker).visit(
+                [](const auto& one) { return std::pair(one.time_s(), one.latest_time_s()); });
+            require(!(std::abs(time_s - last_s) > latest_s - last_s), "time_s",
+                    ("within an hour of the last scan, at " + std::to_string(last_s)).c_str(),
+                    time_s);
             require_in_range("north_m", north_m);
             require_in_range("east_m", east_m);
             require_positive("position_std_m", position_std_m);
@@ -832,7 +844,7 @@ hushed one is shown again. A new track begins at rest, or with the velocity give
 Parameters
 ----------
 time_s : float
-    At most `latest_time_s`, an hour after the last scan.
+    Within an hour of the last scan.
 north_m, east_m, position_std_m : float
 vnorth_mps, veast_mps, velocity_std_mps : float, optional
     Both components of the velocity, and their standard deviation, per axis.
@@ -845,8 +857,8 @@ int
 Raises
 ------
 ValueError
-    When the time is too far ahead, a number is not finite or beyond 1e9, or the standard deviation
-    not positive.)")
+    When the time is farther from the last scan, a number is not finite or beyond 1e9, or the
+    standard deviation not positive.)")
       .def(
           "merge",
           [](AnyTracker& tracker, std::int64_t id, std::int64_t other_id) {
@@ -855,7 +867,8 @@ ValueError
           py::arg("track_id"), py::arg("other_id"),
           R"(Say that two tracks are of one vessel; False if there are no two of these numbers.
 
-The second is ended, and the first takes its name if it has none.)")
+The second is ended, and the first takes its name and its identity if it has none. Where the vessel
+has two echoes, the second starts a track again: `drop` with `hush` follows it in silence.)")
       .def(
           "rename",
           [](AnyTracker& tracker, std::int64_t id, std::string_view name) {

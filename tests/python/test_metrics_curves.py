@@ -231,7 +231,8 @@ def test_models_that_do_not_fit(modes, rates, truth, message):
 def test_nees_is_the_squared_distance_by_the_inverse(states, count, seed):
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(count, states, states)) + 3 * np.eye(states)
-    error, covariance = rng.normal(size=(count, states)), root @ root.swapaxes(-1, -2)
+    error = rng.normal(size=(count, states))
+    covariance = root @ root.swapaxes(-1, -2) + np.eye(states)
     wanted = [e @ np.linalg.solve(p, e) for e, p in zip(error, covariance, strict=True)]
     np.testing.assert_allclose(metrics.nees(error, covariance), wanted, rtol=1e-8)
 

@@ -304,13 +304,15 @@ def test_a_designated_track_takes_the_plots_that_come():
     assert np.hypot(*(mean - truth.state_at(table.time_s[0])[0])[[0, 2]]) < 40.0
 
 
-def test_a_target_far_ahead_of_the_last_scan_is_not_designated():
+def test_a_target_far_from_the_time_of_the_last_scan_is_not_designated():
     tracker = wl.Tracker(RADAR)
     no_plots = {"range_m": [], "bearing_rad": []}
     tracker.process(100.0, **no_plots)
     before = tracker.save()
-    with pytest.raises(ValueError, match=r"time_s must be at most 3700\.0*, an hour after"):
+    with pytest.raises(ValueError, match=r"within an hour of the last scan, at 100\."):
         tracker.designate(3701.0, 1000.0, 0.0)
+    with pytest.raises(ValueError, match="within an hour"):
+        tracker.designate(-3501.0, 1000.0, 0.0)
     assert tracker.save() == before
     assert tracker.designate(3700.0, 1000.0, 0.0) == 1
     tracker.process(3700.0, **no_plots)

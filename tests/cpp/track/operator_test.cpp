@@ -64,6 +64,18 @@ TEST(Operator, MergesTwoTracksOfOneVessel) {
   EXPECT_FALSE(tracker.merge(1, 2));
 }
 
+TEST(Operator, MergingKeepsTheIdentityOfEither) {
+  VesselTracker tracker = make_tracker();
+  for (const double north_m : {500.0, 900.0})
+    ASSERT_GT(tracker.designate(0.0, north_m, 0.0, 20.0), 0);
+  for (const double time_s : {2.0, 4.0, 6.0})
+    (void)tracker.report({.identity = "Mary", .time_s = time_s, .position_m = {900.0, 0.0}});
+  ASSERT_EQ(tracker.find("ais", "Mary"), tracker.find(2));
+  EXPECT_TRUE(tracker.merge(1, 2));
+  EXPECT_EQ(tracker.find("ais", "Mary"), tracker.find(1));
+  EXPECT_GT(tracker.identity_probability(*tracker.find(1)), 0.9);
+}
+
 TEST(Operator, DesignatingAheadOfTheClockHoldsUpNoScan) {
   Sea sea(2);
   VesselTracker tracker = make_tracker();

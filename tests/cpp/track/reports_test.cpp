@@ -174,6 +174,49 @@ TEST(Reports, ThatLieDragNoTrackOfTheRadar) {
   }
 }
 
+TEST(Reports, OfAVelocityAtWhichTheirPositionsDoNotMoveDragNoTrackOfTheRadar) {
+  std::vector<Vessel> vessels = fleet(20, 3);
+  std::erase_if(vessels, [](const Vessel& one) { return one.boat.velocity_mps.norm() < 3.0; });
+  Scene alone{vessels};
+  alone.run(240.0);
+  const std::vector<std::function<void(PositionReport&)>> lies{
+      [](PositionReport& r) { r.velocity_mps.setZero(); },
+      [](PositionReport& r) { r.velocity_mps = -r.velocity_mps; },
+      [](PositionReport& r) {
+        r.velocity_mps = {-r.velocity_mps[1], r.velocity_mps[0]};
+      },
+      [](PositionReport& r) {  // the position stands after a while
+        if (r.time_s > 60.0) r.position_m -= (r.time_s - 60.0) * r.velocity_mps;
+      }};
+  for (std::size_t lie = 0; lie < lies.size(); ++lie) {
+    Scene with{vessels};
+    for (std::size_t k = 0; k < with.vessels.size(); ++k) {
+      with.vessels[k].identity = std::to_string(k);
+      with.vessels[k].tamper = lies[lie];
+    }
+    with.run(240.0);
+    EXPECT_LT(with.rms_m(), 1.05 * alone.rms_m()) << lie;
+    EXPECT_LT(with.rms_mps(), 1.05 * alone.rms_mps()) << lie;
+  }
+}
+
+TEST(Reports, OfAnotherVelocityThanATrackMovesOnReportsAloneByItsPositions) {
+  Scene scene{fleet(3, 3)};
+  for (Vessel& vessel : scene.vessels) {
+    vessel.identity = std::to_string(&vessel - scene.vessels.data());
+    vessel.seen = false;
+    vessel.tamper = [](PositionReport& r) { r.velocity_mps.setZero(); };
+  }
+  scene.run(240.0);
+  for (const Vessel& vessel : scene.vessels) {
+    const Track* track = scene.tracker.find("ais", vessel.identity);
+    ASSERT_NE(track, nullptr);
+    const Gaussian<4> now = scene.tracker.kinematics_at(*track, 240.0);
+    const Vec<double, 2> velocity_mps(now.mean[1], now.mean[3]);
+    EXPECT_LT((velocity_mps - vessel.boat.velocity_mps).norm(), 1.5);
+  }
+}
+
 TEST(Reports, AnIdentityThatLeavesItsEchoIsTold) {
   Scene scene{all_reporting(4, 4)};
   scene.run(90.0);

@@ -221,9 +221,11 @@ inline Mat<double, 2, 2> shown_offsets(const Vec<double, 2>& from_other,
 /// solved by least squares with weights, the probability that a plot is the vessel's, in a gate
 /// that narrows.
 ///
-/// Reports and plots are given in order of time, each of either kind; a plot is compared with the
-/// reports before and after it. Memory is bounded, and taken by the constructor but for
-/// the results. Only times and values that are finite are taken.
+/// A plot is compared with the reports before and after it. Reports and plots are given as they
+/// come, or all plots first, of which the last `max_waiting_plots` wait for reports; of a vessel
+/// only the last two reports are kept, so that one given long before the plots of its time is
+/// compared with none. Memory is bounded, and taken by the constructor but for the results. Only
+/// times and values that are finite are taken.
 class Calibration {
  public:
   /// Throws `std::invalid_argument` for parameters out of range. The offsets of the radar are not

@@ -45,6 +45,64 @@ struct PositionReport {
   static constexpr std::size_t kMostSource = 15, kMostIdentity = 31;
 };
 
+/// Whether the positions that a vessel reports move as fast, and there, as it says.
+///
+/// A position is reckoned from report to report by the velocities between, and corrected by each
+/// position. What a report is off then, in standard deviations, tells; and so does the sum over the
+/// last ones, of which each counts a fifth less than the one after it, where it is off by little.
+class ReportedVelocity {
+ public:
+  /// Takes the next report, so long after the last one.
+  void note(const PositionReport& report, double since_s) noexcept {
+    const double report_m2 = report.position_std_m * report.position_std_m;
+    reports_ = report.has_velocity() ? reports_ + 1 : 0;
+    const Vec<double, 2> change_mps = report.velocity_mps - velocity_mps_;
+    const double way_m2 = report.velocity_std_mps * report.velocity_std_mps +
+                          change_mps.squaredNorm() / 16;  // it may come sooner or later
+    const double reckoned_m2 = variance_m2_ + since_s * since_s * way_m2;
+    const double total_m2 = reckoned_m2 + report_m2;
+    const Vec<double, 2> off_m =
+        report.position_m - position_m_ - since_s * (velocity_mps_ + change_mps / 2);
+    const Vec<double, 2> off = off_m / std::sqrt(total_m2);
+    const double square = off.squaredNorm();
+    const bool begins = reports_ < 2, follows = !begins && square <= kContradiction;
+    if (begins)
+      sum_.setZero();
+    else
+      sum_ = kMemory * sum_ + std::min(1.0, std::sqrt(kContradiction / square)) * off;
+    squared_ = begins ? 0.0 : std::max(square, (1.0 - kMemory * kMemory) * sum_.squaredNorm());
+    const double gain = follows ? reckoned_m2 / total_m2 : 1.0;
+    position_m_ = report.position_m - (1.0 - gain) * off_m;
+    variance_m2_ = gain * report_m2;
+    velocity_mps_ = report.velocity_mps;
+  }
+
+  /// Whether the last report fits those before; one alone shows nothing.
+  [[nodiscard]] bool fits() const noexcept { return reports_ > 1 && squared_ <= kFit; }
+  /// Whether it contradicts them.
+  [[nodiscard]] bool contradicts() const noexcept { return squared_ > kContradiction; }
+
+  void archive(Archive& fields) {
+    fields(position_m_);
+    fields(variance_m2_);
+    fields(velocity_mps_);
+    fields(sum_);
+    fields(squared_);
+    fields(reports_);
+  }
+
+ private:
+  static constexpr double kFit = 9.0, kContradiction = 16.0;  ///< squared standard deviations
+  static constexpr double kMemory = 0.8;                      ///< what the report before counts
+
+  Vec<double, 2> position_m_ = Vec<double, 2>::Zero();
+  double variance_m2_ = 0.0;  ///< per axis
+  Vec<double, 2> velocity_mps_ = Vec<double, 2>::Zero();
+  Vec<double, 2> sum_ = Vec<double, 2>::Zero();  ///< of what reports were off
+  double squared_ = 0.0;                         ///< the greater of both, of the last report
+  int reports_ = 0;                              ///< with a velocity, in a row
+};
+
 /// A vessel that reports, and what is believed of which track it is.
 ///
 /// The reports of an identity are of one of a few tracks near them or of none. The logarithm of the
@@ -78,6 +136,7 @@ struct Identity {
   double interval_s = 0.0;  ///< between the last two; 0 after the first
   Vec<double, 2> position_m = Vec<double, 2>::Zero();
   double position_std_m = 0.0;
+  ReportedVelocity velocity = {};
   bool disagrees = false;  ///< its last report was far from the track that it is
   int leaps = 0;           ///< reports where a vessel cannot run to, since it was steady
   int in_a_row = 0;        ///< reports between which a vessel can have run
@@ -112,6 +171,7 @@ struct Identity {
     if (reported() && in_a_row == 0) leaps = std::min(leaps + 1, kMostLeaps);
     if (in_a_row >= std::max(kSteady, leaps)) leaps = 0;
     interval_s = reported() ? report.time_s - time_s : 0.0;
+    velocity.note(report, interval_s);
     time_s = report.time_s;
     position_m = report.position_m;
     position_std_m = report.position_std_m;
@@ -132,6 +192,14 @@ struct Identity {
       if (candidate.slot >= 0 && (best == nullptr || candidate.log_odds > best->log_odds))
         best = &candidate;
     return best;
+  }
+
+  /// What was believed of one track is believed of another.
+  void hand_over(const Track& from, const Track& to) noexcept {
+    for (Candidate& candidate : candidates)
+      if (candidate.is(to)) candidate = {};
+    for (Candidate& candidate : candidates)
+      if (candidate.is(from)) candidate = {to.birth, to.slot, candidate.log_odds};
   }
 
   /// Adds evidence for a track; an unlikely candidate makes room for it.
@@ -157,6 +225,7 @@ struct Identity {
     fields(interval_s);
     fields(position_m);
     fields(position_std_m);
+    velocity.archive(fields);
     fields(disagrees);
     fields(leaps);
     fields(in_a_row);

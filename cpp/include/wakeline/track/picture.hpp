@@ -38,7 +38,7 @@ struct Picture {
   static constexpr double kSurelyExists = 0.999;       ///< a target that was designated or reports
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 19;
+  static constexpr std::uint32_t kArchiveVersion = 20;
 
   Picture(std::span<const Radar> of, const TrackerConfig& with, const Estimator& made_of)
       : config(validated(with)),
@@ -122,6 +122,11 @@ struct Picture {
     return started ? scan_time_s + kLongestSilence_s : std::numeric_limits<double>::infinity();
   }
 
+  /// Whether a time is as near to the last scan; any is before the first one.
+  [[nodiscard]] bool is_near_now(double time_s) const noexcept {
+    return !started || std::abs(time_s - scan_time_s) <= kLongestSilence_s;
+  }
+
   /// `kNotFinite` of a time too long after the last scan, `kNegativeTimeStep` of one too long
   /// before.
   [[nodiscard]] Status status_of_time(double time_s) const noexcept {
@@ -184,6 +189,15 @@ struct Picture {
   [[nodiscard]] TimeAlignment alignment_over(const Track& track, double late_s) noexcept {
     const double period_s = longest_period_s();
     return {track, period_s, late_s > period_s ? maneuver_m2s3(track, late_s) : 0.0};
+  }
+
+  /// Whether one of the radars has lately seen the target of a track.
+  [[nodiscard]] bool is_seen_by_radar(const Track& track) const noexcept {
+    constexpr double kPeriods = 4.0;
+    return std::any_of(radars.begin(), radars.end(), [&](const RadarState& radar) {
+      return radar.in_use && radar.started &&
+             scan_time_s - radar.look(track).seen_s <= kPeriods * radar.radar.period_s;
+    });
   }
 
   /// Whether a track was designated for a time to which the scans have not come yet: until then it

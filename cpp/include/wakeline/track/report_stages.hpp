@@ -69,6 +69,8 @@ class ReportStages {
   static constexpr double kOtherVelocities_per_m2s2 = 1e-3;  ///< the same of velocities
   static constexpr double kMostReportEvidence = 4.0;         ///< of a report, log odds
   static constexpr double kReportGate = 16.0;                ///< squared standard deviations
+  static constexpr double kVelocityGate = 25.0;  ///< the same of the velocity of a target that the
+  static constexpr double kAltered = 0.1;        ///< radar sees, and of it what may not show yet
   static constexpr double kSure = 0.9;  ///< a report updates a track that it is of by this much
 
   [[nodiscard]] const RadarState& state() const noexcept { return picture_.state(); }
@@ -124,6 +126,21 @@ class ReportStages {
                state().radar.max_speed_mps * std::abs(dt_s);
   }
 
+  /// Whether a report that contradicts itself, or says another velocity than a track has, is better
+  /// left out: the radar sees the target.
+  [[nodiscard]] bool contradicts_radar(const PositionReport& report, const Identity& identity,
+                                       const Track& track) const noexcept {
+    if (!report.has_velocity() || !picture_.is_seen_by_radar(track)) return false;
+    if (!identity.velocity.fits()) return identity.velocity.contradicts();
+    const Gaussian<4> then = picture_.belief_at(track, report.time_s);
+    const Vec<double, 2> velocity_mps(then.mean[1], then.mean[3]);
+    const double report_m2s2 = report.velocity_std_mps * report.velocity_std_mps +
+                               kAltered * kAltered * report.velocity_mps.squaredNorm();
+    const Cholesky<2> factor(velocity_covariance(then) +
+                             report_m2s2 * Mat<double, 2, 2>::Identity());
+    return factor.ok() && factor.squared_norm(report.velocity_mps - velocity_mps) > kVelocityGate;
+  }
+
   /// Weighs all tracks by a report, and notes which of them it agrees with, in `agreeing_`. Where
   /// it fits several, the better ones gain as much on the others as their likelihoods differ.
   void weigh_identity(const PositionReport& report, Identity& identity) noexcept {
@@ -144,8 +161,10 @@ class ReportStages {
       const double distance = factor.squared_norm(fix.mean - then.mean);
       evidence_[k] = -0.5 * (distance + factor.log_determinant()) -
                      std::log(2.0 * kPi<double> * kOtherVessels_per_m2);
+      const bool contradicts = contradicts_radar(report, identity, track);
+      if (contradicts) evidence_[k] = std::min(evidence_[k], 0.0);
       best = std::max(best, evidence_[k]);
-      if (distance <= kReportGate) agreeing_.push_back(track.slot);
+      if (distance <= kReportGate && !contradicts) agreeing_.push_back(track.slot);
     }
     const double excess = std::max(best - kMostReportEvidence, 0.0);
     for (std::size_t k = 0; k < evidence_.size(); ++k) {
@@ -198,7 +217,7 @@ class ReportStages {
     };
     if constexpr (requires(std::span<const Alternative<KinematicFix>> reading,
                            std::span<double> share) { estimator.update(reading, 1.0, share); }) {
-      if (report.has_velocity()) {
+      if (identity.velocity.fits()) {
         const Gaussian<4> now = reported_kinematics(report, track, late_s);
         update(Alternative<KinematicFix>{
             KinematicFix{now.covariance}, now.mean,
@@ -225,7 +244,7 @@ class ReportStages {
   /// Starts a track of a vessel that reports where no radar has seen it.
   Track* start_reported(const PositionReport& report, Identity& identity) noexcept {
     Gaussian<2> velocity = state().initiation.prior_velocity(state().radar);
-    if (report.has_velocity())
+    if (identity.velocity.fits())
       velocity = {report.velocity_mps, report.velocity_std_mps * report.velocity_std_mps *
                                            Mat<double, 2, 2>::Identity()};
     const Gaussian<2> position{report.position_m, report.position_std_m * report.position_std_m *

@@ -29,12 +29,14 @@ enum class TrackEvent : std::uint8_t {
   kConfirmed,
   kCoasting,
   kLost,
-  kFull,               ///< `max_tracks` is reached; again only when there has been room in between
-  kIdentified,         ///< the track is believed to be of a vessel that reports
-  kIdentityLost,       ///< it is believed so no longer
-  kIdentityDisagrees,  ///< a report of the track's vessel is far from it; again after it was near
-  kIdentityJumps,      ///< a report is farther from the one before than a vessel runs
-  kIdentityShared,     ///< the vessel that reports may be on a track which another one is on
+  kFull,          ///< `max_tracks` is reached; again only when there has been room in between
+  kIdentified,    ///< the track is believed to be of a vessel that reports
+  kIdentityLost,  ///< it is believed so no longer
+  /// A report of the track's vessel is far from it, of another velocity, or contradicts those
+  /// before; again after one that agreed.
+  kIdentityDisagrees,
+  kIdentityJumps,   ///< a report is farther from the one before than a vessel runs
+  kIdentityShared,  ///< the vessel that reports may be on a track which another one is on
 };
 
 /// Name of an event, as in files.

@@ -164,9 +164,9 @@ class Tracker {
   /// with the velocity given, [north, east].
   ///
   /// Returns its number, or 0 when there is no room, a number is not finite or out of range or the
-  /// time is too far ahead. Of several tracks the nearest is confirmed, in standard deviations; it
-  /// is hushed no more. Where the tracker is full, the weakest tentative track is deleted for a new
-  /// one, without an event.
+  /// time is more than an hour from the last scan. Of several tracks the nearest is confirmed, in
+  /// standard deviations; it is hushed no more. Where the tracker is full, the weakest tentative
+  /// track is deleted for a new one, without an event.
   [[nodiscard]] std::int64_t designate(double time_s, double north_m, double east_m,
                                        double position_std_m,
                                        const std::optional<Gaussian<2>>& velocity = {}) noexcept;
@@ -176,8 +176,9 @@ class Tracker {
   /// no events and no plots reported, until its vessel is lost, it is designated or dropped again.
   bool drop(std::int64_t id, bool hush = false) noexcept;
 
-  /// Says that two tracks are of one vessel: the second is deleted, and the first takes its name if
-  /// it has none. False when there are no two of these numbers.
+  /// Says that two tracks are of one vessel: the second is deleted, and the first takes its name
+  /// and its identity if it has none. False when there are no two of these numbers. Where the
+  /// vessel has two echoes, `drop` with `hush` keeps the second from a new number.
   bool merge(std::int64_t id, std::int64_t other_id) noexcept;
 
   /// Names a track (31 bytes at most are kept, of UTF-8 whole letters); false when there is none of

@@ -193,7 +193,7 @@ std::int64_t Tracker<Estimator, Steps>::designate(
     double time_s, double north_m, double east_m, double position_std_m,
     const std::optional<Gaussian<2>>& velocity) noexcept {
   Picture<Estimator, Steps>& picture = parts_->picture;
-  if (!std::isfinite(time_s) || time_s > picture.latest_time_s()) return 0;
+  if (!std::isfinite(time_s) || !picture.is_near_now(time_s)) return 0;
   const Gaussian<2> position{{north_m, east_m},
                              position_std_m * position_std_m * Mat<double, 2, 2>::Identity()};
   if (!in_range(position.mean) || !(position_std_m > 0.0) || !in_range(position_std_m)) return 0;
@@ -233,11 +233,16 @@ bool Tracker<Estimator, Steps>::drop(std::int64_t id, bool hush) noexcept {
 
 template <class Estimator, class Steps>
 bool Tracker<Estimator, Steps>::merge(std::int64_t id, std::int64_t other_id) noexcept {
-  TrackList& tracks = parts_->picture.tracks;
+  Picture<Estimator, Steps>& picture = parts_->picture;
+  TrackList& tracks = picture.tracks;
   Track* track = tracks.find(id);
   Track* other = tracks.find(other_id);
   if (track == nullptr || other == nullptr || track == other) return false;
   if (track->label().empty()) track->name = other->name;
+  if (track->identity < 0 && other->identity >= 0) {
+    track->identity = other->identity;
+    picture.identities[other->identity].hand_over(*other, *track);
+  }
   tracks.remove(other->slot);
   return true;
 }
