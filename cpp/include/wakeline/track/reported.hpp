@@ -26,12 +26,12 @@ namespace wakeline {
 ///     w = 1 / E[exp(-NIS/2)] - 1           1, and the scale of what is not an outlier
 ///     m = E[min(NIS, 18)] / 2              1, and the scale of all
 ///     r = E[u·u'] / E[min(NIS, 18)]        0, and about 1 - w of errors that stay
-///     share = (1/w - 1) if w < 0.9 - 2.3 / sqrt(n) and r > (1 - w) / 2 + 1.5 / sqrt(n),
+///     share = (1/w - 1), at most 2.5, if w < 0.9 - 2.3 / sqrt(n) and r > 0.4 (1 - w),
 ///             plus (m - 1) if m > 1.05 + 2.3 / sqrt(n)
 ///
 /// over the last n looks, about 500 at most. The first counts what does not show against what
 /// does, as errors that wander slowly show in part. Beyond these bounds, which chance seldom
-/// passes, each sets in over a tenth.
+/// passes, each sets in over a tenth, with r over a twentieth.
 class PersistentErrors {
  public:
   /// Takes the NIS of a plot of a track, and the product of its innovation and the one before.
@@ -44,11 +44,12 @@ class PersistentErrors {
 
   /// The part of the covariance of an innovation.
   [[nodiscard]] double share() const noexcept {
-    constexpr double kMostShare = 9.0;
+    constexpr double kMostHidden = 2.5, kMostShare = 9.0;
     const double chance = 2.3 / std::sqrt(looks_);
     const double usual = looks_ / usual_ - 1.0, all = all_ / looks_;
-    const double alike = products_ / (2.0 * all_) - (1.0 - usual) / 2 - 1.5 / std::sqrt(looks_);
-    const double fewer = (1.0 / usual - 1.0) * beyond(0.9 - chance - usual) * beyond(alike);
+    const double alike = products_ / (2.0 * all_) - 0.4 * (1.0 - usual);
+    const double fewer = std::min(1.0 / usual - 1.0, kMostHidden) * beyond(0.9 - chance - usual) *
+                         beyond(2.0 * alike);
     const double more = (all - 1.0) * beyond(all - 1.05 - chance);
     return std::min(fewer + more, kMostShare);
   }
@@ -68,7 +69,7 @@ class PersistentErrors {
   static constexpr double kMostNis = 18.0;
 
   double usual_ = 0.5 * kPriorLooks;
-  double products_ = 0.0;
+  double products_ = 0.6 * kPriorLooks;
   double all_ = kPriorLooks;
   double looks_ = kPriorLooks;
 };
