@@ -1,8 +1,11 @@
 """A live session without network: what it is fed decides its tracks, bit for bit."""
 
 import csv
+import functools
+import itertools
 import json
 import math
+import operator
 import re
 import shutil
 import subprocess
@@ -15,6 +18,7 @@ from hypothesis import strategies as st
 
 import wakeline as wl
 from wakeline._engine.video import Cat240Encoder
+from wakeline.live.asterix_feed import BlockAssembly
 from wakeline.live.config import config_of
 from wakeline.live.lines import LineAssembly
 from wakeline.live.nmea import AisMessage, NmeaDecoder
@@ -285,6 +289,36 @@ def test_without_a_position_tracks_are_frozen_and_the_operator_is_told():
     assert session.status()["radars"]["A"]["unused_plots"] > 0
 
 
+def sentence(body):
+    checksum = functools.reduce(operator.xor, body.encode())
+    return f"${body}*{checksum:02X}\r\n".encode()
+
+
+def test_a_heading_that_is_lost_is_one_alarm_until_it_is_back():
+    session = wl.live.Session({"radar": [JOYRIDE | {"azimuth": "bow"}]})
+    alarms = []
+    session.listeners.append(
+        lambda kind, event: alarms.append(event) if event.get("type") == "alarm" else None
+    )
+    for k in range(600):
+        t = 1000.0 + 0.5 * k
+        session.feed(t, "nmea", sentence("GPGLL,5400.000,N,01000.000,E,,A"))
+        if not 100 <= k < 300:
+            session.feed(t, "nmea", sentence("HEHDT,30.0,T"))
+        mark = {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}
+        if k % 5 == 0:
+            session.feed(t, "radar", json.dumps({"radar": "A", "sector": mark}).encode())
+        session.feed(t, "clock", b"")
+    assert session.status()["inputs"]["nmea"]["problems"] == {}
+    assert [(one["change"], one["text"].partition(":")[0]) for one in alarms] == [
+        ("began", "own ship's heading"),
+        ("ended", "own ship's heading"),
+    ]
+    began, ended = (one["time_s"] for one in alarms)
+    assert 1050.0 < began < 1075.0
+    assert 1150.0 < ended < 1170.0
+
+
 def test_a_radar_ashore_needs_no_own_ship():
     session = wl.live.Session({"radar": [{"name": "A", "position_deg": [54.0, 10.0]}]})
     for k in range(20):
@@ -353,6 +387,24 @@ def test_a_vessel_that_reports_gives_its_track_an_identity():
     assert "257000001" in [row["identity"] for row in rows if row["type"] == "track"]
     (named,) = [row for row in rows if row.get("event") == "identified"]
     assert named["identity"] == "257000001"
+
+
+def test_vessels_that_report_are_tracks_before_a_radar_turns():
+    session = wl.live.Session({"radar": [JOYRIDE | {"position_deg": [54.0, 10.0]}]})
+    lines = written(session)
+    for k in range(240):
+        t = 1000.0 + 0.5 * k
+        if k % 12 == 0:
+            report = {"source": "ais", "identity": "257000001", "time_s": t, "speed_mps": 5.0}
+            report |= {"north_m": 2000.0 - 5.0 * t, "east_m": 300.0, "course_rad": math.pi}
+            session.feed(t, "ais", json.dumps({"report": report}).encode())
+        session.feed(t, "clock", b"")
+    rows = [json.loads(line) for line in lines]
+    tracks = [row for row in rows if row["type"] == "track"]
+    assert len(tracks) > 10
+    assert {row["identity"] for row in tracks} == {"257000001"}
+    assert all(row["time_s"] >= 1000.0 for row in rows)
+    assert session.command({"command": "rename", "track_id": 1, "name": "Mary"}) == {"ok": True}
 
 
 def test_operators_name_drop_and_acquire():
@@ -736,6 +788,29 @@ def test_the_status_says_how_far_the_clock_of_a_radar_server_is_off():
     session.feed(604.0, "spokes", b'{"spokesPerRevolution": 2048}')
     session.feed(605.0, "spokes", spoke(1, 1025, 3000, bytes(16)))  # of 5 s
     assert session.status()["radars"]["A"]["clock_offset_s"] == pytest.approx(600.0)
+
+
+@settings(max_examples=50)
+@given(
+    lengths=st.lists(st.integers(0, 300), min_size=1, max_size=8),
+    cuts=st.lists(st.integers(1, 2500), max_size=12),
+)
+def test_blocks_of_asterix_do_not_depend_on_the_cuts_of_a_stream(lengths, cuts):
+    blocks = [
+        bytes([48, *(3 + n).to_bytes(2, "big")]) + bytes(k % 256 for k in range(n)) for n in lengths
+    ]
+    stream, assembly, problems = b"".join(blocks), BlockAssembly(), Problems()
+    edges = [0, *sorted({cut for cut in cuts if cut < len(stream)}), len(stream)]
+    found = [
+        block
+        for begin, end in itertools.pairwise(edges)
+        for block in assembly.feed(stream[begin:end], problems)
+    ]
+    assert found == blocks
+    assert not problems.count
+    assert list(assembly.feed(b"no ASTERIX", problems)) == []
+    assert list(assembly.feed(blocks[0], problems)) == blocks[:1]
+    assert sum(problems.count.values()) == 1
 
 
 def test_messages_of_redundant_groups_count_once():

@@ -1,6 +1,8 @@
 """Zones and alarms of a session: laws of one alarm for each entry, danger, loss and silence."""
 
 import csv
+import errno
+import io
 import itertools
 import json
 import math
@@ -13,6 +15,7 @@ from hypothesis import strategies as st
 
 import wakeline as wl
 from wakeline.live.alarms import AlarmConfig, AlarmLog, Alarms, notification
+from wakeline.live.lines import append_whole
 from wakeline.live.zones import MOST_ZONES, OwnPlace, Zone, Zones
 
 SQUARE = [[0.0, 0.0], [0.0, 100.0], [100.0, 100.0], [100.0, 0.0]]
@@ -381,6 +384,44 @@ def test_the_list_is_json_and_the_log_has_every_change(tmp_path):
     assert 'gate, "north"' in rows[0]["text"]
     assert rows[0]["utc"] == "2023-11-14T22:13:20.000Z"
     json.dumps(alarms.list(), allow_nan=False)
+
+
+class Disk(io.FileIO):
+    """A file on a disk that takes so many octets."""
+
+    room = 1 << 20
+
+    def write(self, octets):
+        taken = min(len(octets), self.room)
+        if taken == 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        self.room -= taken
+        return super().write(bytes(octets[:taken]))
+
+
+def test_a_file_has_whole_lines_where_the_disk_fills_up(tmp_path):
+    with Disk(tmp_path / "lines", "a") as file:
+        append_whole(file, b"one\n")
+        file.room = 3
+        with pytest.raises(OSError, match="No space"):
+            append_whole(file, b"two\n")
+        file.room = 10
+        append_whole(file, b"three\n")
+    assert (tmp_path / "lines").read_bytes() == b"one\nthree\n"
+
+
+def test_a_table_that_takes_no_more_is_a_problem_and_ends_nothing(tmp_path):
+    path = tmp_path / "alarms.csv"
+    alarms, log = Alarms(zones=[Zone(outline_m=SQUARE)], config=QUIET), AlarmLog(path)
+    log._file.close()
+    log._file = Disk(path, "a")
+    for t, (north_m, room) in enumerate([(50.0, 1 << 20), (-50.0, 20), (50.0, 1 << 20)]):
+        log._file.room = room
+        log.write(alarms.update(1.7e9 + t, table({1: (north_m, 50.0)})))
+        assert log.problem == ("" if room > 20 else f"{path}: No space left on device")
+    log.close()
+    with path.open(newline="") as file:
+        assert [row["change"] for row in csv.DictReader(file)] == ["began", "began"]
 
 
 def test_notifications_of_signal_k():

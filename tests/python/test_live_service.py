@@ -1,6 +1,7 @@
 """A live session on the loopback: sockets, session files, replay, restart."""
 
 import asyncio
+import errno
 import json
 import math
 import os
@@ -355,7 +356,7 @@ def test_late_data_and_segments_replay_bit_for_bit(tmp_path):
     path, rng, begin_s = tmp_path / "s.pcap", random.Random(2), time.time()
     turns = [turn(k, begin_s) for k in range(100)]
     arrivals = sorted((t + 4.0 * rng.random(), octets) for t, octets in turns)
-    session, lines = fed(path, arrivals, segment_mb=0.02)
+    session, lines = fed(path, arrivals, segment_mb=0.01)
     assert len(segments_of(path)) > 2
     assert session.status()["late"]["late_inputs"] >= 10
     again, repeated = replayed(path)
@@ -489,6 +490,80 @@ def test_a_later_segment_alone_keeps_the_numbers(tmp_path):
     assert tracks.keys() == whole.keys()
     for number, track in tracks.items():
         assert track.mean == whole[number].mean
+
+
+class Disk:
+    """Stands in for `os.write`: takes so many octets, and then no more."""
+
+    def __init__(self, monkeypatch, room):
+        self.room, self._write = room, os.write
+        monkeypatch.setattr("wakeline.live.record.os.write", self)
+
+    def __call__(self, file, octets):
+        taken = min(len(octets), self.room)
+        if taken == 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        self.room -= taken
+        return self._write(file, octets[:taken])
+
+
+def test_tracking_continues_on_a_full_disk_and_the_record_when_there_is_room(tmp_path, monkeypatch):
+    path = tmp_path / "s.pcap"
+    config = LiveConfig(radars=(ASHORE,))
+    service = Service(wl.live.Session(config), path)
+    service._begin()
+    begin_s = time.time()
+    for k in range(6):
+        service._feed("x", [turn(k, begin_s)])
+    disk = Disk(monkeypatch, room=100)
+    for k in range(6, 12):
+        service._feed("x", [turn(k, begin_s)])
+    (problem,) = service.session.status()["file_problems"]
+    assert problem == f"{path}: No space left on device"
+    assert len(service.session.tracker.tracks()) == 2
+    before = list(read_session(path))
+    disk.room, service._again_s = 2000, -math.inf  # not enough for a segment
+    service._feed("x", [turn(12, begin_s)])
+    assert segments_of(path) == [path]
+    assert list(read_session(path)) == before
+    disk.room, service._again_s = 1 << 30, -math.inf
+    for k in range(13, 16):
+        service._feed("x", [turn(k, begin_s)])
+    assert service.session.status()["file_problems"] == []
+    service.close()
+    whole = {one.track_id: one.mean for one in service.session.tracker.tracks()}
+    again = Service(wl.live.Session(config), path)
+    again._begin()
+    again.close()
+    assert {one.track_id: one.mean for one in again.session.tracker.tracks()} == whole
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_a_session_of_other_settings_is_not_continued(tmp_path):
+    path = tmp_path / "s.pcap"
+    limits = SessionConfig(segment_mb=0.01)
+    for radars in ((ASHORE,), (ASHORE, RadarConfig("B", position_deg=(54.1, 10.0)))):
+        service = Service(wl.live.Session(LiveConfig(radars=radars, session=limits)), path)
+        if len(radars) == 2:
+            with pytest.raises(RecordingError, match="cannot be continued"):
+                service.run()
+            break
+        service._begin()
+        for k in range(60):
+            service._feed("x", [turn(k, time.time())])
+        service.close()
+    assert len(segments_of(path)) > 1
+
+
+def test_a_session_is_replayed_with_the_settings_of_a_file(tmp_path, capsys):
+    path, lines = tmp_path / "s.pcap", tmp_path / "t.jsonl"
+    run_demo_like(path, range(12), time.time())
+    settings = tmp_path / "live.toml"
+    settings.write_text("[tracker]\nbirth_density_per_m2 = 0.0\n")
+    main(["live", str(settings), "--replay", str(path), "--speed", "max", "--out", f"file:{lines}"])
+    assert "0 tracks at the end" in capsys.readouterr().out
+    main(["live", "--replay", str(path), "--speed", "max", "--out", f"file:{lines}"])
+    assert "2 tracks at the end" in capsys.readouterr().out
 
 
 def test_another_file_is_no_session(tmp_path):

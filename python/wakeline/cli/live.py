@@ -136,7 +136,7 @@ def _config(arguments: argparse.Namespace) -> LiveConfig:
         first = next(read_session(arguments.replay), None)
         if first is None or "settings" not in (first.values or {}):
             raise SettingsError(f"{arguments.replay}: the session has no settings")
-        config = replace(config_of(first.values["settings"], arguments.replay), outputs=())
+        config = _of_session(arguments, config_of(first.values["settings"], arguments.replay))
     else:
         config = read_config(arguments.config) if arguments.config else LiveConfig()
     inputs = tuple(InputConfig(url) for url in arguments.inputs_)
@@ -153,6 +153,19 @@ def _config(arguments: argparse.Namespace) -> LiveConfig:
     if arguments.own is not None:
         config = replace(config, own=replace(config.own, place_deg=arguments.own))
     return config
+
+
+def _of_session(arguments: argparse.Namespace, recorded: LiveConfig) -> LiveConfig:
+    """The settings of a session, or of the file in their place; inputs are those recorded."""
+    if not arguments.config:
+        return replace(recorded, outputs=())
+    given, usual = read_config(arguments.config), LiveConfig()
+    return replace(
+        given,
+        inputs=recorded.inputs,
+        radars=recorded.radars if given.radars == usual.radars else given.radars,
+        own=recorded.own if given.own == usual.own else given.own,
+    )
 
 
 def _record(arguments: argparse.Namespace, config: LiveConfig) -> Path | None:
@@ -198,6 +211,10 @@ def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
     ends = threading.Event()
     with contextlib.ExitStack() as stack:
         stack.enter_context(_stopped_by_signals(ends.set))
+        if arguments.for_s is not None:
+            timer = threading.Timer(arguments.for_s, ends.set)
+            stack.callback(timer.cancel)
+            timer.start()
         outputs = [NetworkOutput(one) for one in config.outputs]
         stack.callback(close_all, outputs)
         for one in outputs:
@@ -216,8 +233,7 @@ def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
         player = SessionPlayback(arguments.replay, speed=speed, config=config, attach=attach)
         stack.enter_context(_screen(arguments, player))
         stack.enter_context(contextlib.closing(player.start()))
-        ends_s = time.monotonic() + (arguments.for_s or math.inf)
-        while not ends.wait(1.0) and time.monotonic() < ends_s:
+        while not ends.wait(1.0):
             if not arguments.quiet:
                 with player.lock:
                     print(status_line(player.status()), flush=True)
@@ -277,7 +293,7 @@ def status_line(status: dict[str, Any]) -> str:
         if radar["age_s"] is not None:
             parts.append(f"{name} {radar['plots']} plots, {radar['age_s']:.1f} s")
     parts.append(f"{status['tracks']} tracks, {status['ais_vessels']} AIS")
-    sent = sum(one["messages"] for one in status["outputs"].values())
+    sent = sum(one["sent"] for one in status["outputs"].values())
     if status["outputs"]:
         parts.append(f"{sent} sent")
     lost = sum(one.get("lost_sweeps") or 0 for one in status["inputs"].values())
@@ -287,6 +303,10 @@ def status_line(status: dict[str, Any]) -> str:
     if wrong:
         worst = max(status["inputs"].items(), key=lambda item: sum(item[1]["problems"].values()))
         parts.append(f"{wrong} problems, last of {worst[0]}: {worst[1]['last_problem']}")
+    for name, one in (*status["inputs"].items(), *status["outputs"].items()):
+        if one["failing"]:
+            parts.append(f"{name}: {one['connection']}")
+    parts += status["file_problems"]
     if status["frozen"]:
         parts.append(status["frozen"])
     return " | ".join(parts)

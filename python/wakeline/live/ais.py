@@ -214,8 +214,8 @@ class AisPicture:
 
 def _take_position(vessel: AisVessel, time_s: float, message: Any) -> bool:
     latitude, longitude = float(message.lat), float(message.lon)
-    if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0):
-        return False
+    if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0) or latitude == longitude == 0.0:
+        return False  # 0/0 is that of a receiver without a fix
     speed_kn = getattr(message, "speed", None)
     course_deg = getattr(message, "course", None)
     heading_deg = getattr(message, "heading", None)

@@ -7,13 +7,14 @@ and keeps it until it is over; the operator can silence or acknowledge an alarm 
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,7 @@ import wakeline as wl
 from wakeline._brief import quoted
 from wakeline._checks import not_negative, whole_number
 
+from .lines import append_whole
 from .zones import Crossing, OwnPlace, Zone, Zones
 
 OWN_SHIP = 0
@@ -636,6 +638,11 @@ class AlarmLog:
     ----------
     path : str or Path
         Lines are appended to a file that exists.
+
+    Attributes
+    ----------
+    problem : str
+        Why the last lines were not written, as where the disk is full; else empty.
     """
 
     COLUMNS = (
@@ -644,14 +651,14 @@ class AlarmLog:
     )
 
     def __init__(self, path: str | Path) -> None:
-        self._file: TextIO = Path(path).open("a", encoding="utf-8", newline="")  # noqa: SIM115
-        self._writer = csv.writer(self._file)
+        self._path, self.problem = Path(path), ""
+        self._file: io.FileIO = self._path.open("ab", buffering=0)
         if self._file.tell() == 0:
-            self._writer.writerow(self.COLUMNS)
-            self._file.flush()
+            append_whole(self._file, _csv([self.COLUMNS]))
 
     def write(self, events: Iterable[AlarmEvent]) -> None:
-        """Append events."""
+        """Append events, or take note of why they cannot be."""
+        rows = []
         for time_s, change, alarm in events:
             row = [getattr(alarm, name, "") for name in self.COLUMNS]
             values = dict(zip(self.COLUMNS, row, strict=True))
@@ -659,12 +666,22 @@ class AlarmLog:
             values["tracks"] = " ".join("own" if t == OWN_SHIP else str(t) for t in alarm.tracks)
             for name, form in (("cpa_m", ".1f"), ("tcpa_s", ".1f"), ("probability", ".3f")):
                 values[name] = "" if _unknown(values[name]) else format(values[name], form)
-            self._writer.writerow(values.values())
-        self._file.flush()
+            rows.append(values.values())
+        try:
+            append_whole(self._file, _csv(rows))
+            self.problem = ""
+        except OSError as error:
+            self.problem = f"{self._path}: {error.strerror}"
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _csv(rows: Iterable[Iterable[Any]]) -> bytes:
+    text = io.StringIO(newline="")
+    csv.writer(text).writerows(rows)
+    return text.getvalue().encode()
 
 
 def _rows(table: Any, *names: str) -> Iterable[tuple]:

@@ -11,10 +11,32 @@ from .problems import Problems
 from .radar_feed import PlotRow, Sector
 
 CATEGORIES = (10, 34, 48)
+_VIDEO = 240
+_HEAD = 3  # octets of the category and the length of a block
 _PLOT, _NORTH, _SECTOR = 0, 1, 2
 _TURN_RAD = 2.0 * math.pi
 _SAME_RAD = 1e-6
 _LATE_S = 2.0  # a mark from so much before the last one has been overtaken by it
+
+
+class BlockAssembly:
+    """Data blocks of ASTERIX from a stream that is cut anywhere."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, octets: bytes, problems: Problems) -> Iterator[bytes]:
+        """Take the next octets; the blocks that are whole with them."""
+        self._rest += octets
+        while len(self._rest) >= _HEAD:
+            length = int.from_bytes(self._rest[1:_HEAD], "big")
+            if self._rest[0] not in (*CATEGORIES, _VIDEO) or length < _HEAD:
+                problems.add("ASTERIX", f"no data block begins with {self._rest[:_HEAD].hex()}")
+                self._rest = b""
+            if len(self._rest) < max(length, _HEAD):
+                return
+            block, self._rest = self._rest[:length], self._rest[length:]
+            yield block
 
 
 class AsterixFeed:

@@ -118,6 +118,7 @@ class TrackEngine:
         self._heard: set[int] = set()  # radars that have given a sector
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0
+        self._reported = False
         self._known = np.zeros(0, dtype=np.int64), np.zeros((0, 4))
         self._watched: deque[tuple[np.ndarray, np.ndarray]] = deque()
         self._watched_plots = 0
@@ -188,9 +189,9 @@ class TrackEngine:
             self._correct_s = self.time_s
         elif time_s - self._correct_s > self._tracker.window_s:
             events += self.correct()
-        if not self._heard:
+        if not (self._heard or self._reported):
             return events
-        fastest = min(sorted(self._heard), key=lambda k: self.radars[k].period_s)
+        fastest = min(sorted(self._heard) or [0], key=lambda k: self.radars[k].period_s)
         wait_s = _SILENT_TURNS * self.radars[fastest].period_s
         if self.time_s < time_s - wait_s - min(self._late_s, self._tracker.window_s):
             events += self._catch_up(fastest, time_s)
@@ -289,6 +290,7 @@ class TrackEngine:
         """
         if not math.isfinite(report["vnorth_mps"] + report["veast_mps"]):
             report |= {"vnorth_mps": None, "veast_mps": None}
+        self._reported = True
         return _events(self._tracker.report(**report).events)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
+from io import FileIO
 
 from .problems import Problems
 
@@ -43,3 +45,21 @@ class LineAssembly:
             problems.add("long line", f"wanted at most {self._longest} octets a line")
             self._drops = True
         self._rest = b"" if self._drops else rest
+
+
+def append_whole(file: FileIO, octets: bytes) -> None:
+    """Append octets to a file without a buffer: all of them, or none where it takes no more.
+
+    Raises
+    ------
+    OSError
+        As where the disk is full.
+    """
+    end = file.seek(0, os.SEEK_END)
+    try:
+        rest = memoryview(octets)
+        while rest:
+            rest = rest[file.write(rest) :]
+    except OSError:
+        file.truncate(end)
+        raise

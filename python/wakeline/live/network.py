@@ -14,6 +14,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -22,6 +23,7 @@ from wakeline.recording.containers import datagrams_of
 
 from . import signalk
 from .config import InputConfig, OutputConfig, SettingsError
+from .lines import append_whole
 
 Take = Callable[[str, list[tuple[float, bytes]]], None]
 """Called with the name of an input and its messages: times and octets."""
@@ -62,6 +64,7 @@ class _Thread(abc.ABC):
     def __init__(self, config: InputConfig | OutputConfig) -> None:
         self.config = config
         self.connection = "starting"
+        self._error = ""
         self.restarts = 0
         self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
         self._ends = threading.Event()
@@ -84,12 +87,18 @@ class _Thread(abc.ABC):
         self._ends.set()
 
     def join(self) -> None:
-        self._thread.join(2.0)
+        if self._thread.ident is not None:
+            self._thread.join(2.0)
 
     @property
     def is_done(self) -> bool:
         """Whether it has ended by itself."""
         return not self._thread.is_alive()
+
+    @property
+    def is_failing(self) -> bool:
+        """Whether `connection` is the error for which it waits to begin again."""
+        return self.connection == self._error != ""
 
     def _run(self) -> None:
         """Work, and begin again with growing pauses after an error."""
@@ -102,7 +111,7 @@ class _Thread(abc.ABC):
                     return
                 self.connection = "closed by the other side"
             except (OSError, SettingsError) as error:
-                self.connection = _in_words(error)
+                self.connection = self._error = _in_words(error)
             if time.monotonic() - began_s > 2.0 * _BACK_OFF_S[1]:
                 pause_s = _BACK_OFF_S[0]
             self.restarts += 1
@@ -337,7 +346,7 @@ class NetworkOutput(_Thread):
         super().__init__(config)
         self._waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._queued = 0
-        self.dropped = 0
+        self.sent = self.dropped = 0
 
     def send(self, octets: bytes) -> None:
         """Send a message; it never waits."""
@@ -345,10 +354,11 @@ class NetworkOutput(_Thread):
             try:
                 self._datagrams.send(octets)
                 self.connection = "sending"
+                self.sent += 1
             except OSError as error:
                 self.dropped += 1
                 if error.errno not in (errno.ECONNREFUSED, errno.EAGAIN):
-                    self.connection = _in_words(error)
+                    self.connection = self._error = _in_words(error)
             return
         if self._queued > _MOST_QUEUED:
             self.dropped += 1
@@ -392,7 +402,12 @@ class NetworkOutput(_Thread):
         while True:
             octets = self._next()
             if octets is not None:
-                send(octets)
+                try:
+                    send(octets)
+                except OSError:
+                    self.dropped += 1
+                    raise
+                self.sent += 1
             elif self._ends.is_set():
                 return True
 
@@ -409,7 +424,7 @@ class NetworkOutput(_Thread):
             return self._each(_write_stdout)
         with Path(self._url.netloc + self._url.path).open("ab", buffering=0) as file:
             self.connection = "writing"
-            return self._each(file.write)
+            return self._each(partial(append_whole, file))
 
     def _write_serial(self) -> bool:
         try:
@@ -436,6 +451,7 @@ class NetworkOutput(_Thread):
                         clients[one] = _Client(one)
                     else:
                         one.close()
+                self.sent += octets is not None and bool(clients)
                 for one, client in list(clients.items()):
                     if octets is not None:
                         self.dropped += client.add(octets)

@@ -28,16 +28,20 @@ class Output:
     send : callable
         Called with the octets of one message; replaced by what brings them to the receiver.
     messages, octets : int
-        Sent until now.
-    dropped : int
-        Messages that the receiver did not take in time.
+        For the receiver until now.
+    sent, dropped : int
+        Messages that were sent, and that the receiver did not take in time.
+    connection : str
+    failing : bool
+        Whether `connection` says why nothing can be sent.
     """
 
     def __init__(self, config: OutputConfig) -> None:
         self.config = config
         self.send: Callable[[bytes], None] = _nowhere
-        self.messages = self.octets = self.dropped = 0
+        self.messages = self.octets = self.sent = self.dropped = 0
         self.connection = ""
+        self.failing = False
 
     def tracks(self, session: Session, lines: Callable[[], Sequence[bytes]]) -> None:
         """Send the tracks that sectors have updated, which `lines` gives as JSON."""
@@ -63,8 +67,10 @@ class Output:
             "url": self.config.url,
             "format": self.config.format,
             "connection": self.connection,
+            "failing": self.failing,
             "messages": self.messages,
             "octets": self.octets,
+            "sent": self.sent,
             "dropped": self.dropped,
         }
 

@@ -111,7 +111,7 @@ class Ranked:
         self.name, self.sources = name, dict[SourceKey, Source]()
         self.used: Source | None = None
         self.why = "no source yet"
-        self._preferred, self._dwell_s, self._age_s = tuple(preferred), dwell_s, age_s
+        self._preferred, self._dwell_s, self.oldest_s = tuple(preferred), dwell_s, age_s
         self._begin_s: float | None = None
 
     def add(
@@ -121,7 +121,7 @@ class Ranked:
         source = self.sources.get(key)
         if source is None:
             source = self.sources[key] = Source(key, self._rank(key), time_s)
-        elif source.age_s(time_s) > self._age_s:
+        elif source.age_s(time_s) > self.oldest_s:
             source.since_s = time_s
         source.unusable = unusable
         source.add(time_s, value)
@@ -132,7 +132,7 @@ class Ranked:
     def choose(self, time_s: float) -> None:
         """Choose the source to be used at a time."""
         used = self.used
-        if used is not None and (used.age_s(time_s) > self._age_s or used.unusable):
+        if used is not None and (used.age_s(time_s) > self.oldest_s or used.unusable):
             best = self._best(time_s, 0.0)
             if best is not None and best is not used:
                 silent = used.unusable or f"silent for {used.age_s(time_s):.1f} s"
@@ -149,7 +149,7 @@ class Ranked:
         fresh = [
             source
             for source in self.sources.values()
-            if source.age_s(time_s) <= self._age_s
+            if source.age_s(time_s) <= self.oldest_s
             and not source.unusable
             and time_s - source.since_s >= dwell_s
         ]
@@ -177,7 +177,7 @@ class Ranked:
     def fresh(self, time_s: float) -> Source | None:
         """The source used, unless its readings are too far from that time."""
         source = self.used
-        if source is None or source.unusable or source.off_s(time_s) > self._age_s:
+        if source is None or source.unusable or source.off_s(time_s) > self.oldest_s:
             return None
         return source
 
@@ -286,6 +286,16 @@ class OwnShipSources:
         """Choose the sources to be used at a time."""
         for one in (self.position, self.heading, self.velocity, self.turn):
             one.choose(time_s)
+
+    def ages_s(self, time_s: float) -> list[tuple[str, float, float]]:
+        """Of position and heading that have come, the age and the age at which it is too old."""
+        if self._fixed is not None:
+            return []
+        return [
+            (name, math.inf if one.used.unusable else one.age_s(time_s), one.oldest_s)
+            for name, one in (("position", self.position), ("heading", self.heading))
+            if one.used is not None
+        ]
 
     def at(self, time_s: float, *, needs_heading: bool = False) -> Pose | Missing:
         """Own ship at a time, or why it is not known."""

@@ -67,7 +67,8 @@ class Recorder:
     settings : dict
         Settings of the session, written at the start of each segment.
     segment_octets, most_octets : int
-        Size at which a new segment begins, and of all segments before the oldest is removed.
+        Size, without the state at its begin, at which a new segment begins; and of all segments
+        before the oldest is removed.
     state : callable, optional
         Gives the state of the session, written at the start of each segment but the first.
     """
@@ -83,7 +84,7 @@ class Recorder:
         self.path, self._settings, self._state = Path(path), settings, state
         self._segment_octets, self._most_octets = segment_octets, most_octets
         self._inputs: dict[str, tuple[int, int]] = {}
-        self._time_s = 0.0
+        self._head_octets = 0  # of the segment, which its state is in
         known = segments_of(self.path)
         self._number = _number_of(known[-1], self.path) if known else 0
         self._file = -1
@@ -91,7 +92,7 @@ class Recorder:
         self._open(known[-1] if known else self.path)
 
     def _open(self, path: Path) -> None:
-        end = _whole_octets(path) if path.exists() else 0
+        end = _whole_octets(path) if path.exists() and path.suffix != ".part" else 0
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT, 0o644)
         os.ftruncate(self._file, end)
         os.lseek(self._file, end, os.SEEK_SET)
@@ -105,8 +106,8 @@ class Recorder:
 
     def data(self, time_s: float, name: str, url: str, octets: bytes) -> None:
         """Write octets of an input."""
-        if self.octets > self._segment_octets:
-            self._rotate(time_s)
+        if self.octets - self._head_octets > self._segment_octets:
+            self.rotate(time_s)
         number, port = self._inputs.get(name) or self._add_input(time_s, name, url)
         for begin in range(0, max(len(octets), 1), _LONGEST):
             self._packet(time_s, number, port, octets[begin : begin + _LONGEST])
@@ -160,19 +161,32 @@ class Recorder:
         while octets:
             octets = octets[os.write(self._file, octets) :]
 
-    def _rotate(self, time_s: float) -> None:
-        """Begin another segment, which can be read alone."""
-        os.close(self._file)
+    def rotate(self, time_s: float) -> None:
+        """Begin another segment, which can be read alone.
+
+        It has its name when its beginning is whole: one that is cut there is none.
+        """
+        segment = _segment(self.path, self._number + 1)
+        begun = segment.with_name(segment.name + ".part")
+        before = self._file, self.octets
+        try:
+            self._open(begun)
+            self.begin(time_s)
+            if self._state is not None:
+                self._own(time_s, {"state": self._state()})
+            for name, (number, port) in self._inputs.items():
+                url = f"udp://127.0.0.1:{port}"
+                self._own(time_s, {"input": {"number": number, "name": name, "url": url}})
+        except OSError:
+            if self._file != before[0]:
+                os.close(self._file)
+                begun.unlink(missing_ok=True)
+            self._file, self.octets = before
+            raise
+        self._head_octets = self.octets
+        begun.replace(segment)
+        os.close(before[0])
         self._number += 1
-        self._open(_segment(self.path, self._number))
-        self.begin(time_s)
-        if self._state is not None:
-            self._own(time_s, {"state": self._state()})
-        inputs, self._inputs = self._inputs, {}
-        for name, (number, port) in inputs.items():
-            self._inputs[name] = number, port
-            url = f"udp://127.0.0.1:{port}"
-            self._own(time_s, {"input": {"number": number, "name": name, "url": url}})
         segments = segments_of(self.path)
         sizes = [segment.stat().st_size for segment in segments]
         while len(segments) > 1 and sum(sizes) > self._most_octets:

@@ -8,14 +8,18 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
+
+from wakeline.recording import RecordingError
 
 from .network import NetworkInput, NetworkOutput, close_all, now_s
 from .record import Record, Recorder, at_microsecond, read_session, segments_of
 from .session import CLOCK, Session
 
 _TICK_S = 0.5
+_AGAIN_S = 20.0  # until a record that failed is tried again
 _MOST_WAITING = 128 << 20  # octets that the session has not taken
 
 
@@ -51,7 +55,7 @@ class Service:
         self._counting = threading.Lock()
         self._recorder: Recorder | None = None
         self._record = record
-        self._tick_s = -math.inf
+        self._tick_s = self._again_s = -math.inf
 
     def take(self, name: str, messages: list[tuple[float, bytes]]) -> None:
         """Take messages of an input, from any thread."""
@@ -66,9 +70,27 @@ class Service:
     def _journal(self, command: Mapping[str, Any]) -> float:
         """Record what an operator asks for; its time."""
         time_s = max(at_microsecond(now_s()), self.session.time_s)
-        if self._recorder is not None:
-            self._recorder.command(time_s, dict(command))
+        self._keep(time_s, partial(Recorder.command, time_s=time_s, command=dict(command)))
         return time_s
+
+    def _keep(self, time_s: float, write: Callable[[Recorder], None]) -> None:
+        """Record something. Where the file takes nothing more, tracking continues without it.
+
+        From time to time a new segment is tried, which begins with the state.
+        """
+        recorder = self._recorder
+        if recorder is None:
+            return
+        try:
+            if self.session.record_problem:
+                if time.monotonic() < self._again_s:
+                    return
+                recorder.rotate(time_s)
+                self.session.record_problem = ""
+            write(recorder)
+        except OSError as error:
+            self._again_s = time.monotonic() + _AGAIN_S
+            self.session.record_problem = f"{recorder.path}: {error.strerror}"
 
     def run(self, *, every_s: float = 0.0, report: Callable[[], None] | None = None) -> None:
         """Run until `stop`, or until all inputs have ended.
@@ -104,7 +126,7 @@ class Service:
             path = Path(self._record)
             if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
                 for record in read_session(path, last_segment=True):
-                    feed_record(self.session, record)
+                    self._continue(path, record)
             limits = self.session.config.session
             self._recorder = Recorder(
                 path,
@@ -121,6 +143,18 @@ class Service:
         for one in self.inputs:
             one.start()
 
+    def _continue(self, path: Path, record: Record) -> None:
+        """Feed what was recorded."""
+        try:
+            feed_record(self.session, record)
+        except ValueError as error:
+            raise RecordingError(
+                path,
+                "its tracks cannot be continued",
+                wanted="the settings with which it was recorded, or another file",
+                got=str(error),
+            ) from None
+
     def _step(self) -> None:
         """Feed what has arrived, and let time pass twice a second."""
         with contextlib.suppress(queue.Empty):
@@ -135,28 +169,29 @@ class Service:
             self._take_note()
             with self.session.lock:
                 time_s = max(at_microsecond(tick_s), self.session.time_s)
-                if self._recorder is not None:
-                    self._recorder.clock(time_s)
+                self._keep(time_s, partial(Recorder.clock, time_s=time_s))
                 self.session.feed(time_s, CLOCK, b"")
 
     def _feed(self, name: str, messages: list[tuple[float, bytes]]) -> None:
-        session, recorder = self.session, self._recorder
+        session, url = self.session, self.session.url_of(name)
         with self._counting:
             self._waiting_octets -= sum(len(one) for _, one in messages)
         with session.lock:
             for when_s, octets in messages:
                 time_s = max(at_microsecond(when_s), session.time_s)
-                if recorder is not None:
-                    recorder.data(time_s, name, session.url_of(name), octets)
+                data = {"time_s": time_s, "name": name, "url": url, "octets": octets}
+                self._keep(time_s, partial(Recorder.data, **data))
                 session.feed(time_s, name, octets)
 
     def _take_note(self) -> None:
         """Bring connections and losses into the status."""
         for one in self.inputs:
-            self.session.inputs[one.config.name].connection = one.connection
+            source = self.session.inputs[one.config.name]
+            source.connection, source.failing = one.connection, one.is_failing
         for one in self.outputs:
             output = self.session.outputs[one.config.name]
-            output.connection, output.dropped = one.connection, one.dropped
+            output.connection, output.failing = one.connection, one.is_failing
+            output.sent, output.dropped = one.sent, one.dropped
         self.session.lost = self.lost
 
     def close(self) -> None:

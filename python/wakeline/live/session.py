@@ -116,6 +116,7 @@ class Session:
         self._passed_s = -math.inf
         self.journal: Callable[[Mapping[str, Any]], float] | None = None
         self.lost = 0
+        self.record_problem = ""
         bow = {one.name for one in self.config.radars if one.azimuth == "bow"}
         if self.config.radars[0].name in bow:
             bow.add("")  # inputs that name no radar have the first
@@ -402,9 +403,9 @@ class Session:
         plot_time_s, range_m, bearing_rad, covariance = columns(sector.plots)
         if len(sector.plots) and not radar.position_deg:
             range_m, bearing_rad = self._seen_from(
-                own, radar, plot_time_s, range_m, bearing_rad, from_bow
+                sector.time_s, own, radar, plot_time_s, range_m, bearing_rad, from_bow
             )
-        kept = self._outside(own, range_m, bearing_rad)
+        kept = self._outside(*_moved(own, plot_time_s - sector.time_s), range_m, bearing_rad)
         if not kept.all():
             feed.excluded += int(np.sum(~kept))
             plot_time_s, range_m, bearing_rad = (
@@ -440,14 +441,20 @@ class Session:
         if wide or self._is_due():
             self._publish()
 
-    def _outside(self, own: OwnShip, range_m: np.ndarray, bearing_rad: np.ndarray) -> np.ndarray:
+    def _outside(
+        self,
+        own_north_m: np.ndarray,
+        own_east_m: np.ndarray,
+        range_m: np.ndarray,
+        bearing_rad: np.ndarray,
+    ) -> np.ndarray:
         """Whether plots (n,) are outside exclusion zones and land."""
         kept = np.ones(len(range_m), dtype=bool)
         for watcher in self.watchers:
             keeps_out = getattr(watcher, "keeps_out", None)
             if keeps_out is not None and len(range_m):
-                north_m = own.north_m + range_m * np.cos(bearing_rad)
-                east_m = own.east_m + range_m * np.sin(bearing_rad)
+                north_m = own_north_m + range_m * np.cos(bearing_rad)
+                east_m = own_east_m + range_m * np.sin(bearing_rad)
                 kept &= ~keeps_out(np.column_stack([north_m, east_m]))
         return kept
 
@@ -470,6 +477,7 @@ class Session:
 
     def _seen_from(
         self,
+        end_s: float,
         own: OwnShip,
         radar: RadarConfig,
         time_s: np.ndarray,
@@ -477,8 +485,12 @@ class Session:
         bearing_rad: np.ndarray,
         from_bow: bool,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Ranges and true bearings of plots from where the antenna is at the end of the sector."""
+        """Ranges and true bearings of plots from where own ship's velocity has the antenna then.
+
+        That is what a tracker takes, which has own ship at the end of the sector alone.
+        """
         ranges, bearings = np.empty(len(time_s)), np.empty(len(time_s))
+        expected_m = np.stack(_moved(own, time_s - end_s), axis=1)
         rows = zip(time_s.tolist(), range_m.tolist(), bearing_rad.tolist(), strict=True)
         for k, (when_s, r, b) in enumerate(rows):
             antenna = self._antenna(radar, when_s, needs_heading=from_bow)
@@ -487,8 +499,8 @@ class Session:
                 continue
             pose, then = antenna
             true_rad = b + pose.heading_rad if from_bow else b
-            north_m = then.north_m - own.north_m + r * math.cos(true_rad)
-            east_m = then.east_m - own.east_m + r * math.sin(true_rad)
+            north_m = then.north_m - expected_m[k, 0] + r * math.cos(true_rad)
+            east_m = then.east_m - expected_m[k, 1] + r * math.sin(true_rad)
             ranges[k], bearings[k] = math.hypot(north_m, east_m), math.atan2(east_m, north_m)
         return ranges, bearings
 
@@ -677,6 +689,12 @@ class Session:
             )
         return values
 
+    def _file_problems(self) -> list[str]:
+        """Why the session file or the table of alarms is not written."""
+        logs = [getattr(one, "log", None) for one in self.watchers]
+        found = [self.record_problem, *(one.problem for one in logs if one is not None)]
+        return [one for one in found if one]
+
     def status(self) -> dict[str, Any]:
         """Rates, losses, ages and problems of all sources, ready for JSON."""
         time_s = self.time_s if math.isfinite(self.time_s) else 0.0
@@ -685,6 +703,7 @@ class Session:
                 "time_s": time_s,
                 "frozen": self.frozen,
                 "lost_batches": self.lost,
+                "file_problems": self._file_problems(),
                 "late": self.tracker.late,
                 "north_off_deg": self._north_off_deg(time_s),
                 "inputs": {name: one.status(time_s) for name, one in self.inputs.items()},
@@ -824,6 +843,10 @@ class Session:
         """Own ship as receivers of TTM have it: the last fix, not predicted; ashore the radar."""
         pose = self.own.at(self.time_s)
         if isinstance(pose, Missing):
+            used = self.own.position.used
+            if used is not None:  # receivers keep the last fix
+                north_m, east_m = used.value[-1][:2]
+                return OwnShip(north_m=north_m, east_m=east_m)
             antenna = self._antenna(self.config.radars[0], self.time_s, needs_heading=False)
             return OwnShip() if isinstance(antenna, Missing) else antenna[1]
         source = self.own.position.fresh(self.time_s)
@@ -886,6 +909,11 @@ def _velocity(values: Mapping[str, float]) -> tuple[float, float]:
 def _with_true_bearings(own: OwnShip) -> OwnShip:
     """The antenna of a radar that gives true bearings: its errors of heading are the radar's."""
     return OwnShip(**(own.as_dict() | {"heading_std_rad": 0.0}))
+
+
+def _moved(own: OwnShip, ahead_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where an antenna is so long after, by its velocity: north and east, m, (n,) each."""
+    return own.north_m + ahead_s * own.vnorth_mps, own.east_m + ahead_s * own.veast_mps
 
 
 def _text(octets: bytes) -> str:

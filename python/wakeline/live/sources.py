@@ -10,7 +10,7 @@ from typing import Any
 
 from wakeline.wire import SensorClock
 
-from .asterix_feed import CATEGORIES, AsterixFeed
+from .asterix_feed import CATEGORIES, AsterixFeed, BlockAssembly
 from .config import InputConfig
 from .json_lines import BadLine, read_line
 from .lines import LineAssembly
@@ -98,6 +98,9 @@ class Source:
     clock : SensorClock
         Of times in JSON lines.
     last_s : float
+    connection : str
+    failing : bool
+        Whether `connection` says why nothing can be received.
     """
 
     def __init__(self, config: InputConfig, shared: Receivers | None = None) -> None:
@@ -106,9 +109,11 @@ class Source:
         self.duplicates = 0
         self.last_s = -math.inf
         self.connection = ""
+        self.failing = False
         self.video: VideoFeed | None = None
         self._nmea = NmeaDecoder(config.is_stream)
         self._lines = LineAssembly(config.is_stream, _LONGEST_LINE)
+        self._blocks = BlockAssembly()
         self._signalk = SignalkDecoder()
         self._format = config.format
 
@@ -152,11 +157,13 @@ class Source:
             for each in self._spoke_feed().feed(time_s, octets, self.problems):
                 yield "radar", each
         elif kind == "cat240" or kind in _PLOTS:
-            if not self._shared.recent.is_new(time_s, self.radar, octets):
-                self.duplicates += 1
-                return
-            for each in self._receiver(kind).feed(time_s, octets, self.problems):
-                yield "radar", each
+            blocks = self._blocks.feed(octets, self.problems) if self.config.is_stream else [octets]
+            for block in blocks:
+                if not self._shared.recent.is_new(time_s, self.radar, block):
+                    self.duplicates += 1
+                    continue
+                for each in self._receiver(kind).feed(time_s, block, self.problems):
+                    yield "radar", each
         elif octets:
             wanted = "wanted NMEA, JSON or ASTERIX"
             self.problems.add("unknown", f"{wanted}, got {octets[:24]!r}")
@@ -207,6 +214,7 @@ class Source:
             "url": self.config.url,
             "format": self._format,
             "connection": self.connection,
+            "failing": self.failing,
             "messages": self.rate.messages,
             "octets": self.rate.octets,
             "messages_per_s": round(messages, 2),

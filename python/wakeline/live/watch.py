@@ -133,17 +133,19 @@ class AlarmWatcher(AlarmBoard):
 def event_of(event: AlarmEvent) -> dict[str, Any]:
     """For JSON lines."""
     time_s, change, alarm = event
-    return {"type": "alarm", "change": change, "time_s": time_s} | alarm.as_dict(time_s)
+    return {"type": "alarm", "change": change} | alarm.as_dict(time_s) | {"time_s": time_s}
 
 
 def _sensors(session: Any, time_s: float) -> list[Sensor]:
-    """Radars, silent after three turns, and the other inputs, after 15 s."""
+    """Radars, silent after three turns and 10 s, and own ship's data where they are too old."""
     sensors = [
         Sensor(f"radar {name}", time_s - feed.last_s, max(3.0 * (feed.period_s or 0.0), 10.0))
         for name, feed in session.feeds.items()
         if feed.last_s > float("-inf")
     ]
-    if session.frozen:
+    own = session.own.ages_s(time_s)
+    sensors += [Sensor(f"own ship's {name}", age_s, oldest_s) for name, age_s, oldest_s in own]
+    if session.frozen and not own:
         sensors.append(Sensor(session.frozen, float("inf"), 0.0))
     return sensors
 
