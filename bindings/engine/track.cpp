@@ -210,9 +210,10 @@ PyReport sector(AnyTracker& tracker, int radar, double from_rad, double to_rad, 
   own.validate();
   std::vector<Plot> plots = plots_of(time_s, range_m, bearing_rad, plot_time_s, covariance,
                                      [&](std::size_t) { return own; });
-  for (Plot& plot : plots) {  // each as of its own time
-    plot.own.north_m += (plot.time_s - time_s) * own.vnorth_mps;
-    plot.own.east_m += (plot.time_s - time_s) * own.veast_mps;
+  for (Plot& plot : plots) {  // each as of its own time; a later one counts as of the sector's
+    const double ahead_s = std::min(plot.time_s - time_s, 0.0);
+    plot.own.north_m += ahead_s * own.vnorth_mps;
+    plot.own.east_m += ahead_s * own.veast_mps;
   }
   const auto hold = tracker.lock();  // the report is the tracker's memory
   require_radar(tracker, radar);

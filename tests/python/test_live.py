@@ -813,6 +813,24 @@ def test_blocks_of_asterix_do_not_depend_on_the_cuts_of_a_stream(lengths, cuts):
     assert sum(problems.count.values()) == 1
 
 
+@pytest.mark.parametrize("piece", [7, 1460, 1 << 16])
+def test_a_stream_of_asterix_may_begin_within_a_block_and_has_other_categories(piece):
+    rng = np.random.default_rng(1)
+    blocks = []
+    for k in range(500):
+        category = 247 if k % 7 == 3 else (48, 34, 240)[k % 3]
+        contents = rng.bytes(int(rng.integers(5, 400)))
+        blocks.append(bytes([category, *(3 + len(contents)).to_bytes(2, "big")]) + contents)
+    stream, assembly, problems = b"".join(blocks)[100:], BlockAssembly(), Problems()
+    found = [
+        block
+        for begin in range(0, len(stream), piece)
+        for block in assembly.feed(stream[begin : begin + piece], problems)
+    ]
+    ours = [block for block in blocks if block[0] != 247]
+    assert found[-380:] == ours[-380:]
+
+
 def test_messages_of_redundant_groups_count_once():
     inputs = [{"url": f"udp://127.0.0.1:1?name={name}", "radar": "A"} for name in "ab"]
     session = wl.live.Session({"input": inputs, "radar": [{"name": "A", "azimuth": "north"}]})

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 from aiohttp import web
@@ -535,24 +536,45 @@ def test_tracking_continues_on_a_full_disk_and_the_record_when_there_is_room(tmp
     again = Service(wl.live.Session(config), path)
     again._begin()
     again.close()
-    assert {one.track_id: one.mean for one in again.session.tracker.tracks()} == whole
+    for session in (again.session, replayed(path)[0]):
+        assert {one.track_id: one.mean for one in session.tracker.tracks()} == whole
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_a_session_of_other_settings_is_not_continued(tmp_path):
+def test_a_session_begins_on_a_full_disk_and_is_recorded_when_there_is_room(tmp_path, monkeypatch):
+    path, begin_s = tmp_path / "s.pcap", time.time()
+    disk = Disk(monkeypatch, room=10)
+    service = Service(wl.live.Session(LiveConfig(radars=(ASHORE,))), path)
+    service._begin()
+    for k in range(6):
+        service._feed("x", [turn(k, begin_s)])
+    assert service.session.status()["file_problems"] == [f"{path}: No space left on device"]
+    assert not segments_of(path)
+    disk.room, service._again_s = 1 << 30, -math.inf
+    for k in range(6, 12):
+        service._feed("x", [turn(k, begin_s)])
+    service.close()
+    whole = {one.track_id: one.mean for one in service.session.tracker.tracks()}
+    assert len(whole) == 2
+    assert {one.track_id: one.mean for one in replayed(path)[0].tracker.tracks()} == whole
+
+
+def test_a_session_of_other_settings_or_inputs_is_not_continued(tmp_path):
     path = tmp_path / "s.pcap"
-    limits = SessionConfig(segment_mb=0.01)
-    for radars in ((ASHORE,), (ASHORE, RadarConfig("B", position_deg=(54.1, 10.0)))):
-        service = Service(wl.live.Session(LiveConfig(radars=radars, session=limits)), path)
-        if len(radars) == 2:
-            with pytest.raises(RecordingError, match="cannot be continued"):
-                service.run()
-            break
-        service._begin()
-        for k in range(60):
-            service._feed("x", [turn(k, time.time())])
-        service.close()
+    config = LiveConfig(radars=(ASHORE,), session=SessionConfig(segment_mb=0.01))
+    service = Service(wl.live.Session(config), path)
+    service._begin()
+    for k in range(60):
+        service._feed("x", [turn(k, time.time())])
+    service.close()
     assert len(segments_of(path)) > 1
+    radar = RadarConfig("B", position_deg=(54.1, 10.0))
+    for changed in (
+        replace(config, radars=(ASHORE, radar)),
+        replace(config, inputs=(InputConfig("udp://127.0.0.1:0?name=y"),)),
+    ):
+        with pytest.raises(RecordingError, match="cannot be continued"):
+            Service(wl.live.Session(changed), path).run()
 
 
 def test_a_session_is_replayed_with_the_settings_of_a_file(tmp_path, capsys):

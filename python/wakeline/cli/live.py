@@ -27,7 +27,7 @@ from wakeline.live.demo import TTM_PORT, DemoSender, demo_config
 from wakeline.live.network import NetworkOutput, close_all
 from wakeline.live.playback import SPEEDS, SessionPlayback
 from wakeline.live.record import read_session
-from wakeline.live.service import Service, feed_record, replay
+from wakeline.live.service import Service, feed_record, note_outputs, replay
 from wakeline.live.session import Session
 from wakeline.tracking.settings import Settings, SettingsError, read_settings
 
@@ -227,7 +227,7 @@ def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
             session.watchers[0].log = log
 
         if arguments.web is None:
-            _replay_all(arguments, config, attach, ends)
+            _replay_all(arguments, config, attach, ends, outputs)
             return
         speed = min(arguments.speed, SPEEDS[-1])
         player = SessionPlayback(arguments.replay, speed=speed, config=config, attach=attach)
@@ -240,7 +240,11 @@ def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
 
 
 def _replay_all(
-    arguments: argparse.Namespace, config: LiveConfig, attach: Any, ends: threading.Event
+    arguments: argparse.Namespace,
+    config: LiveConfig,
+    attach: Any,
+    ends: threading.Event,
+    outputs: list[NetworkOutput],
 ) -> None:
     session = Session(config)
     attach(session)
@@ -250,6 +254,7 @@ def _replay_all(
         count += 1
         if not arguments.quiet and time.monotonic() >= next_s:
             next_s = time.monotonic() + 1.0
+            note_outputs(session, outputs)
             print(status_line(session.status()), flush=True)
     print(f"{count} records replayed, {session.status()['tracks']} tracks at the end")
 

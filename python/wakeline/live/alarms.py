@@ -22,7 +22,7 @@ import wakeline as wl
 from wakeline._brief import quoted
 from wakeline._checks import not_negative, whole_number
 
-from .lines import append_whole
+from .lines import append_whole, in_words
 from .zones import Crossing, OwnPlace, Zone, Zones
 
 OWN_SHIP = 0
@@ -667,11 +667,13 @@ class AlarmLog:
             for name, form in (("cpa_m", ".1f"), ("tcpa_s", ".1f"), ("probability", ".3f")):
                 values[name] = "" if _unknown(values[name]) else format(values[name], form)
             rows.append(values.values())
+        if not rows:
+            return
         try:
             append_whole(self._file, _csv(rows))
             self.problem = ""
         except OSError as error:
-            self.problem = f"{self._path}: {error.strerror}"
+            self.problem = f"{self._path}: {in_words(error)}"
 
     def close(self) -> None:
         """Close the file."""

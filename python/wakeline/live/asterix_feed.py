@@ -11,7 +11,8 @@ from .problems import Problems
 from .radar_feed import PlotRow, Sector
 
 CATEGORIES = (10, 34, 48)
-_VIDEO = 240
+_OURS = frozenset((*CATEGORIES, 240))
+_ALL = _OURS | {*range(1, 34), 62, 63, 65, 150, 205, 247, 252}
 _HEAD = 3  # octets of the category and the length of a block
 _PLOT, _NORTH, _SECTOR = 0, 1, 2
 _TURN_RAD = 2.0 * math.pi
@@ -20,23 +21,33 @@ _LATE_S = 2.0  # a mark from so much before the last one has been overtaken by i
 
 
 class BlockAssembly:
-    """Data blocks of ASTERIX from a stream that is cut anywhere."""
+    """Data blocks of ASTERIX from a stream that is cut anywhere and may begin within a block."""
 
     def __init__(self) -> None:
         self._rest = b""
 
     def feed(self, octets: bytes, problems: Problems) -> Iterator[bytes]:
-        """Take the next octets; the blocks that are whole with them."""
+        """Take the next octets; the blocks of our categories that are whole with them."""
         self._rest += octets
         while len(self._rest) >= _HEAD:
-            length = int.from_bytes(self._rest[1:_HEAD], "big")
-            if self._rest[0] not in (*CATEGORIES, _VIDEO) or length < _HEAD:
+            if not self._begins_at(0, _ALL):
                 problems.add("ASTERIX", f"no data block begins with {self._rest[:_HEAD].hex()}")
-                self._rest = b""
-            if len(self._rest) < max(length, _HEAD):
+                ends = range(1, len(self._rest) - _HEAD + 1)
+                begin = next((k for k in ends if self._begins_at(k, _OURS)), len(self._rest))
+                self._rest = self._rest[begin:]
+                continue
+            length = int.from_bytes(self._rest[1:_HEAD], "big")
+            if len(self._rest) < length:
                 return
             block, self._rest = self._rest[:length], self._rest[length:]
-            yield block
+            if block[0] in _OURS:
+                yield block
+
+    def _begins_at(self, at: int, categories: frozenset[int]) -> bool:
+        """Whether a block begins there, and another one where it ends."""
+        length = int.from_bytes(self._rest[at + 1 : at + _HEAD], "big")
+        after = self._rest[at + length : at + length + 1]
+        return self._rest[at] in categories and length >= _HEAD and (not after or after[0] in _ALL)
 
 
 class AsterixFeed:

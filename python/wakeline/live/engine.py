@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -278,10 +278,16 @@ class TrackEngine:
         """The state, for `restore`."""
         return self._tracker.save()
 
-    def restore(self, state: bytes) -> None:
+    @property
+    def heard(self) -> list[int]:
+        """The radars that have given a sector."""
+        return sorted(self._heard)
+
+    def restore(self, state: bytes, heard: Iterable[int] | None = None) -> None:
         """Continue from a state; ValueError if it is that of another tracker."""
         self._tracker.restore(state)
-        self._heard = set(range(len(self.radars)))
+        self._heard = set(range(len(self.radars)) if heard is None else heard)
+        self._reported = True
 
     def report(self, **report: Any) -> list[dict[str, Any]]:
         """Take a position report with an identity; the events of tracks.

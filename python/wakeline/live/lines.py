@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from collections.abc import Iterator
@@ -55,11 +56,19 @@ def append_whole(file: FileIO, octets: bytes) -> None:
     OSError
         As where the disk is full.
     """
-    end = file.seek(0, os.SEEK_END)
+    end = file.seek(0, os.SEEK_END) if file.seekable() else None
     try:
         rest = memoryview(octets)
         while rest:
             rest = rest[file.write(rest) :]
     except OSError:
-        file.truncate(end)
+        if end is not None:
+            with contextlib.suppress(OSError):  # as of a device
+                file.truncate(end)
         raise
+
+
+def in_words(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error)

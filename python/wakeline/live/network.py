@@ -23,7 +23,7 @@ from wakeline.recording.containers import datagrams_of
 
 from . import signalk
 from .config import InputConfig, OutputConfig, SettingsError
-from .lines import append_whole
+from .lines import append_whole, in_words
 
 Take = Callable[[str, list[tuple[float, bytes]]], None]
 """Called with the name of an input and its messages: times and octets."""
@@ -89,6 +89,10 @@ class _Thread(abc.ABC):
     def join(self) -> None:
         if self._thread.ident is not None:
             self._thread.join(2.0)
+            return
+        for one in (self._datagrams, self._listener):  # it has not been started
+            if one is not None:
+                one.close()
 
     @property
     def is_done(self) -> bool:
@@ -111,7 +115,7 @@ class _Thread(abc.ABC):
                     return
                 self.connection = "closed by the other side"
             except (OSError, SettingsError) as error:
-                self.connection = self._error = _in_words(error)
+                self.connection = self._error = in_words(error)
             if time.monotonic() - began_s > 2.0 * _BACK_OFF_S[1]:
                 pause_s = _BACK_OFF_S[0]
             self.restarts += 1
@@ -358,7 +362,7 @@ class NetworkOutput(_Thread):
             except OSError as error:
                 self.dropped += 1
                 if error.errno not in (errno.ECONNREFUSED, errno.EAGAIN):
-                    self.connection = self._error = _in_words(error)
+                    self.connection = self._error = in_words(error)
             return
         if self._queued > _MOST_QUEUED:
             self.dropped += 1
@@ -542,12 +546,6 @@ def _probe(one: socket.socket) -> None:
     for name, value in PROBES.items():
         if hasattr(socket, name):
             one.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
-
-
-def _in_words(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror
-    return str(error)
 
 
 def close_all(threads: Iterable[_Thread]) -> None:

@@ -367,7 +367,9 @@ class Playback(Player):
 
     def status(self) -> dict[str, Any]:
         """Of the recording."""
-        return {"recording": {"time_s": self.time_s, "speed": self.speed, "paused": self.paused}}
+        recording = {"time_s": self.time_s, "speed": self.speed, "paused": self.paused}
+        problem = "" if self._log is None else self._log.problem
+        return {"recording": recording, "file_problems": [problem] if problem else []}
 
     def _origin_deg(self) -> list[float] | None:
         if self._plane is None:

@@ -9,6 +9,7 @@ the session, so that it can be replayed alone.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -24,6 +25,7 @@ from wakeline.recording.containers import datagrams_of
 _MAGIC, _LINK_RAW, _MOST = 0xA1B2C3D4, 101, 262144
 _HEAD = struct.pack("<IHHiIII", _MAGIC, 2, 4, 0, 0, _MOST, _LINK_RAW)
 _LONGEST = 65000  # octets of a packet
+_IP_HEAD = 28  # octets of the heads of IP and UDP
 _SESSION = "127.0.0.1"
 _VERSION = 1
 _MICRO = 1_000_000
@@ -91,8 +93,8 @@ class Recorder:
         self.octets = 0
         self._open(known[-1] if known else self.path)
 
-    def _open(self, path: Path) -> None:
-        end = _whole_octets(path) if path.exists() and path.suffix != ".part" else 0
+    def _open(self, path: Path, *, fresh: bool = False) -> None:
+        end = _whole_octets(path) if path.exists() and not fresh else 0
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT, 0o644)
         os.ftruncate(self._file, end)
         os.lseek(self._file, end, os.SEEK_SET)
@@ -147,7 +149,7 @@ class Recorder:
         second, micro = divmod(round(time_s * _MICRO), _MICRO)
         high, low = divmod(number, 256)
         address = bytes((127, 1, high, low)) if number else bytes((127, 0, 0, 1))
-        length = len(octets) + 28
+        length = len(octets) + _IP_HEAD
         ip = struct.pack(
             ">BBHHHBBH4s4s", 0x45, 0, length, 0, 0, 64, 17, 0, bytes((127, 0, 0, 1)), address
         )
@@ -161,36 +163,39 @@ class Recorder:
         while octets:
             octets = octets[os.write(self._file, octets) :]
 
-    def rotate(self, time_s: float) -> None:
+    def rotate(self, time_s: float, *, after_gap: bool = False) -> None:
         """Begin another segment, which can be read alone.
 
-        It has its name when its beginning is whole: one that is cut there is none.
+        It gets its name when its beginning is whole, so that one that is cut there is not read.
+        After a gap, in which records were lost, a replay continues from its state.
         """
         segment = _segment(self.path, self._number + 1)
         begun = segment.with_name(segment.name + ".part")
         before = self._file, self.octets
         try:
-            self._open(begun)
+            self._open(begun, fresh=True)
             self.begin(time_s)
             if self._state is not None:
-                self._own(time_s, {"state": self._state()})
+                self._own(time_s, {"state": self._state(), "after_gap": after_gap})
             for name, (number, port) in self._inputs.items():
                 url = f"udp://127.0.0.1:{port}"
                 self._own(time_s, {"input": {"number": number, "name": name, "url": url}})
-        except OSError:
+            begun.replace(segment)
+        except BaseException:
             if self._file != before[0]:
                 os.close(self._file)
                 begun.unlink(missing_ok=True)
             self._file, self.octets = before
             raise
         self._head_octets = self.octets
-        begun.replace(segment)
         os.close(before[0])
         self._number += 1
         segments = segments_of(self.path)
         sizes = [segment.stat().st_size for segment in segments]
         while len(segments) > 1 and sum(sizes) > self._most_octets:
-            segments.pop(0).unlink()
+            with contextlib.suppress(OSError):
+                segments[0].unlink()
+            segments.pop(0)
             sizes.pop(0)
 
 
@@ -217,9 +222,9 @@ def read_session(path: str | Path, *, last_segment: bool = False) -> Iterator[Re
         raise RecordingError(path, "there is no such file", wanted="a session file")
     segments = segments[-1:] if last_segment else segments
     names: dict[str, str] = {}
-    pending = b""
     is_session = False
     for segment in segments:
+        pending = b""
         for time_s, address, _, octets in datagrams_of(segment):
             if address != _SESSION:
                 if address not in names:
@@ -259,8 +264,9 @@ def _number_of(segment: Path, path: Path) -> int:
 
 
 def _whole_octets(path: Path) -> int:
-    """Octets of a session file up to the end of its last whole record."""
+    """Octets of a session file up to the end of its last whole record of all its packets."""
     size, at = path.stat().st_size, len(_HEAD)
+    whole = at
     with path.open("rb") as file:
         if file.read(len(_HEAD)) != _HEAD:
             if size == 0:
@@ -268,11 +274,14 @@ def _whole_octets(path: Path) -> int:
             raise _no_session(path)
         while at + 16 <= size:
             file.seek(at)
-            kept = struct.unpack("<I", file.read(16)[8:12])[0]
+            head = file.read(16 + _IP_HEAD)
+            kept = struct.unpack("<I", head[8:12])[0]
             if kept > _MOST or at + 16 + kept > size:
                 break
             at += 16 + kept
-    return at
+            goes_on = kept == _LONGEST + _IP_HEAD and head[32:36] == bytes((127, 0, 0, 1))
+            whole = whole if goes_on else at
+    return whole
 
 
 def _checksum(header: bytes) -> int:

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import math
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from wakeline.recording import RecordingError
 
+from .lines import in_words
 from .network import NetworkInput, NetworkOutput, close_all, now_s
 from .record import Record, Recorder, at_microsecond, read_session, segments_of
 from .session import CLOCK, Session
 
 _TICK_S = 0.5
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 _AGAIN_S = 20.0  # until a record that failed is tried again
 _MOST_WAITING = 128 << 20  # octets that the session has not taken
 
@@ -78,19 +81,46 @@ class Service:
 
         From time to time a new segment is tried, which begins with the state.
         """
-        recorder = self._recorder
-        if recorder is None:
+        if self._record is None:
             return
         try:
             if self.session.record_problem:
                 if time.monotonic() < self._again_s:
                     return
-                recorder.rotate(time_s)
+                if self._recorder is None:
+                    self._recorder = self._begun_recorder(time_s)
+                self._recorder.rotate(time_s, after_gap=True)
                 self.session.record_problem = ""
-            write(recorder)
+            if self._recorder is not None:
+                write(self._recorder)
         except OSError as error:
-            self._again_s = time.monotonic() + _AGAIN_S
-            self.session.record_problem = f"{recorder.path}: {error.strerror}"
+            self._note_problem(error)
+
+    def _begun_recorder(self, time_s: float) -> Recorder:
+        """A recorder whose settings are written; a new file that does not take them is removed."""
+        config, path = self.session.config, Path(self._record)
+        is_new = not segments_of(path) or segments_of(path)[-1].stat().st_size == 0
+        limits, recorder = config.session, None
+        try:
+            recorder = Recorder(
+                path,
+                config.as_document(),
+                round(limits.segment_mb * 1e6),
+                round(limits.most_mb * 1e6),
+                self.session.save,
+            )
+            recorder.begin(time_s)
+        except OSError:
+            if recorder is not None:
+                recorder.close()
+            if is_new:
+                path.unlink(missing_ok=True)
+            raise
+        return recorder
+
+    def _note_problem(self, error: OSError) -> None:
+        self._again_s = time.monotonic() + _AGAIN_S
+        self.session.record_problem = f"{self._record}: {in_words(error)}"
 
     def run(self, *, every_s: float = 0.0, report: Callable[[], None] | None = None) -> None:
         """Run until `stop`, or until all inputs have ended.
@@ -127,15 +157,13 @@ class Service:
             if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
                 for record in read_session(path, last_segment=True):
                     self._continue(path, record)
-            limits = self.session.config.session
-            self._recorder = Recorder(
-                path,
-                self.session.config.as_document(),
-                round(limits.segment_mb * 1e6),
-                round(limits.most_mb * 1e6),
-                self.session.save,
-            )
-            self._recorder.begin(max(at_microsecond(now_s()), self.session.time_s))
+            time_s = max(at_microsecond(now_s()), self.session.time_s)
+            try:
+                self._recorder = self._begun_recorder(time_s)
+            except OSError as error:
+                if error.errno not in _FULL:
+                    raise
+                self._note_problem(error)
         self.session.journal = self._journal
         for one in self.outputs:
             self.session.outputs[one.config.name].send = one.send
@@ -145,13 +173,16 @@ class Service:
 
     def _continue(self, path: Path, record: Record) -> None:
         """Feed what was recorded."""
+        inputs = [one.name for one in self.session.config.inputs]
         try:
+            if record.input and inputs and record.input.partition(" from ")[0] not in inputs:
+                raise ValueError(f"no input named {record.input}")
             feed_record(self.session, record)
         except ValueError as error:
             raise RecordingError(
                 path,
                 "its tracks cannot be continued",
-                wanted="the settings with which it was recorded, or another file",
+                wanted="the settings and inputs with which it was recorded, or another file",
                 got=str(error),
             ) from None
 
@@ -188,10 +219,7 @@ class Service:
         for one in self.inputs:
             source = self.session.inputs[one.config.name]
             source.connection, source.failing = one.connection, one.is_failing
-        for one in self.outputs:
-            output = self.session.outputs[one.config.name]
-            output.connection, output.failing = one.connection, one.is_failing
-            output.sent, output.dropped = one.sent, one.dropped
+        note_outputs(self.session, self.outputs)
         self.session.lost = self.lost
 
     def close(self) -> None:
@@ -207,6 +235,14 @@ class Service:
             self._recorder.close()
 
 
+def note_outputs(session: Session, outputs: Iterable[NetworkOutput]) -> None:
+    """Bring what was sent, and why nothing is, into the status of a session."""
+    for one in outputs:
+        output = session.outputs[one.config.name]
+        output.connection, output.failing = one.connection, one.is_failing
+        output.sent, output.dropped = one.sent, one.dropped
+
+
 def feed_record(session: Session, record: Record) -> None:
     """Feed a record of a session file to a session."""
     if record.values is None:
@@ -214,7 +250,7 @@ def feed_record(session: Session, record: Record) -> None:
     elif "command" in record.values:
         session.command(record.values["command"], record.time_s)
     elif "state" in record.values:
-        if session.time_s == -math.inf:
+        if session.time_s == -math.inf or record.values.get("after_gap"):
             session.restore(record.values["state"])
         else:
             session.correct()  # as it was when the state was saved

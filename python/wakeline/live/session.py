@@ -563,7 +563,7 @@ class Session:
         self._disagree = {
             key: when_s for key, when_s in self._disagree.items() if now_s - when_s < _DISAGREE_S
         }
-        return [(*key, "its reports are far from its echo") for key in self._disagree]
+        return [(*key, "its reports disagree with its echo") for key in self._disagree]
 
     def _event(self, event: dict[str, Any]) -> None:
         self.events.append(event)
@@ -759,6 +759,7 @@ class Session:
             "time_s": self.time_s if math.isfinite(self.time_s) else 0.0,
             "origin_deg": self.origin_deg,
             "tracker": _text(self.tracker.save()),
+            "heard": self.tracker.heard,
             "alarms": self.watchers[0].alarms.save(),
             "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
         }
@@ -770,7 +771,7 @@ class Session:
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from a state; ValueError if it is not that of a session like this one."""
         try:
-            self.tracker.restore(base64.b64decode(state["tracker"]))
+            self.tracker.restore(base64.b64decode(state["tracker"]), state.get("heard"))
             if state["origin_deg"] is not None:
                 self._set_origin(*map(float, state["origin_deg"]))
             self.watchers[0].alarms.restore(state["alarms"])

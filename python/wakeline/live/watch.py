@@ -145,7 +145,7 @@ def _sensors(session: Any, time_s: float) -> list[Sensor]:
     ]
     own = session.own.ages_s(time_s)
     sensors += [Sensor(f"own ship's {name}", age_s, oldest_s) for name, age_s, oldest_s in own]
-    if session.frozen and not own:
+    if session.frozen and all(age_s <= oldest_s for _, age_s, oldest_s in own):
         sensors.append(Sensor(session.frozen, float("inf"), 0.0))
     return sensors
 

@@ -200,6 +200,38 @@ TEST(Reports, OfAVelocityAtWhichTheirPositionsDoNotMoveDragNoTrackOfTheRadar) {
   }
 }
 
+/// What an honest vessel on a circle reports, its velocity smoothed so long.
+PositionReport on_circle(double time_s, double speed_mps, double rate, double lag_s, Draw& draw) {
+  const auto heading = [&](double at_s) {
+    return Vec<double, 2>(std::cos(rate * at_s), std::sin(rate * at_s));
+  };
+  const double radius_m = speed_mps / rate;
+  const Vec<double, 2> place(std::sin(rate * time_s), 1.0 - std::cos(rate * time_s));
+  return {.identity = "honest",
+          .time_s = time_s,
+          .position_m = radius_m * place + 5.0 * draw.normals<2>(),
+          .position_std_m = 5.0,
+          .velocity_mps = speed_mps * heading(time_s - lag_s) + 0.2 * draw.normals<2>(),
+          .velocity_std_mps = 0.3};
+}
+
+TEST(ReportedVelocity, OfAVesselThatTurnsIsNotContradicted) {
+  for (const auto& [speed_mps, rate_deg, every_s, lag_s] :
+       {std::tuple(8.0, 3.0, 2.0, 0.0), std::tuple(8.0, 3.0, 2.0, 2.0),
+        std::tuple(8.0, 2.0, 10.0, 0.0), std::tuple(15.0, 3.0, 10.0, 1.0)}) {
+    Draw draw(5);
+    ReportedVelocity velocity;
+    int fits = 0, contradicts = 0;
+    for (int k = 0; k < 300; ++k) {
+      velocity.note(on_circle(every_s * k, speed_mps, deg(rate_deg), lag_s, draw), every_s);
+      fits += velocity.fits();
+      contradicts += velocity.contradicts();
+    }
+    EXPECT_GT(fits, 270) << rate_deg << " " << lag_s;
+    EXPECT_LT(contradicts, 6) << rate_deg << " " << lag_s;
+  }
+}
+
 TEST(Reports, OfAnotherVelocityThanATrackMovesOnReportsAloneByItsPositions) {
   Scene scene{fleet(3, 3)};
   for (Vessel& vessel : scene.vessels) {

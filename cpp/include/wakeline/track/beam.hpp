@@ -60,33 +60,34 @@ class Beam {
     swept_from_rad_ = angle_rad_ - kTurn;
   }
 
-  /// Passes a sector `dt_s` after the one before. A gap in front of it that a vessel could be in is
-  /// not swept; where sectors overlap the beam does not go back. After a silence as many turns are
-  /// missed as it took: returns the angle of these.
+  /// Passes a sector `dt_s` after the one before; one of no width only lets time pass. A gap in
+  /// front of it that a vessel could be in is not swept; where sectors overlap the beam does not go
+  /// back. After a silence as many turns are missed as it took: returns the angle of the whole
+  /// ones.
   double sweep(double from_rad, double width_rad, double dt_s, double period_s) noexcept {
+    if (width_rad == 0.0) return 0.0;
     if (!running_) {
       running_ = true;
       swept_from_rad_ = angle_rad_ + compass_angle(from_rad - angle_rad_);
       angle_rad_ = swept_from_rad_ + width_rad;
       return 0.0;
     }
-    const double ahead_rad = wrap_angle(from_rad - angle_rad_);
-    double missed_rad = 0.0;
+    double ahead_rad = wrap_angle(from_rad - angle_rad_);
     if (std::abs(ahead_rad) > kSame_rad || dt_s > 2.0 * period_s) {
       const double turns = std::round((kTurn * dt_s / period_s - width_rad - ahead_rad) / kTurn);
-      missed_rad = kTurn * std::max(turns, 0.0);
+      ahead_rad += kTurn * std::max(turns, 0.0);
     }
-    const double begin_rad = angle_rad_ + ahead_rad + missed_rad;
-    if (missed_rad > 0.0 && width_rad > 0.0) resumed_rad_ = begin_rad;
-    if (begin_rad > angle_rad_ + kSeam_rad) swept_from_rad_ = begin_rad;
+    const double missed_rad = kTurn * std::max(std::floor((ahead_rad + kSame_rad) / kTurn), 0.0);
+    const double begin_rad = angle_rad_ + ahead_rad;
+    if (missed_rad > 0.0) resumed_rad_ = begin_rad;
+    if (ahead_rad > kSeam_rad) swept_from_rad_ = begin_rad;
     angle_rad_ = std::max(angle_rad_, begin_rad + width_rad);
     return missed_rad;
   }
 
   [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }
 
-  /// Whether the beam is yet to pass a part of the turn, and of the gates there, since it missed
-  /// turns.
+  /// Whether the beam has not yet passed all gates since it missed whole turns.
   [[nodiscard]] bool resumes() const noexcept {
     constexpr double kTurns = 1.25;
     return angle_rad_ < resumed_rad_ + kTurns * kTurn;

@@ -45,11 +45,12 @@ struct PositionReport {
   static constexpr std::size_t kMostSource = 15, kMostIdentity = 31;
 };
 
-/// Whether the positions that a vessel reports move as fast, and there, as it says.
+/// Whether reported positions move at the reported velocity.
 ///
-/// A position is reckoned from report to report by the velocities between, and corrected by each
-/// position. What a report is off then, in standard deviations, tells; and so does the sum over the
-/// last ones, of which each counts a fifth less than the one after it, where it is off by little.
+/// A position is predicted from report to report by the mean of both velocities, and corrected by
+/// each position. The prediction error shows a wrong velocity, in standard deviations; and so does
+/// the sum of the last ones, of which each counts a fifth less than the one after it, where it is
+/// small. A velocity may be smoothed: what it may lag behind in three seconds is allowed for.
 class ReportedVelocity {
  public:
   /// Takes the next report, so long after the last one.
@@ -57,10 +58,12 @@ class ReportedVelocity {
     const double report_m2 = report.position_std_m * report.position_std_m;
     reports_ = report.has_velocity() ? reports_ + 1 : 0;
     const Vec<double, 2> change_mps = report.velocity_mps - velocity_mps_;
-    const double way_m2 = report.velocity_std_mps * report.velocity_std_mps +
-                          change_mps.squaredNorm() / 16;  // it may come sooner or later
-    const double reckoned_m2 = variance_m2_ + since_s * since_s * way_m2;
-    const double total_m2 = reckoned_m2 + report_m2;
+    constexpr double kLag_s = 3.0;
+    const double lag = 0.25 + (since_s > 0.0 ? kLag_s / since_s : 0.0);
+    const double velocity_m2s2 =
+        report.velocity_std_mps * report.velocity_std_mps + lag * lag * change_mps.squaredNorm();
+    const double predicted_m2 = variance_m2_ + since_s * since_s * velocity_m2s2;
+    const double total_m2 = predicted_m2 + report_m2;
     const Vec<double, 2> off_m =
         report.position_m - position_m_ - since_s * (velocity_mps_ + change_mps / 2);
     const Vec<double, 2> off = off_m / std::sqrt(total_m2);
@@ -71,7 +74,7 @@ class ReportedVelocity {
     else
       sum_ = kMemory * sum_ + std::min(1.0, std::sqrt(kContradiction / square)) * off;
     squared_ = begins ? 0.0 : std::max(square, (1.0 - kMemory * kMemory) * sum_.squaredNorm());
-    const double gain = follows ? reckoned_m2 / total_m2 : 1.0;
+    const double gain = follows ? predicted_m2 / total_m2 : 1.0;
     position_m_ = report.position_m - (1.0 - gain) * off_m;
     variance_m2_ = gain * report_m2;
     velocity_mps_ = report.velocity_mps;

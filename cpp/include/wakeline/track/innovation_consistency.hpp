@@ -28,15 +28,11 @@ class InnovationConsistency {
   /// Adds a whitened innovation u; one that is not finite changes nothing.
   void add(const Vec<double, kMeasurements>& whitened) noexcept {
     if (!is_finite(whitened)) return;
-    last_product_ = whitened.dot(last_);
     squares_ = kMemory * squares_ + whitened.squaredNorm();
-    products_ = kMemory * products_ + last_product_;
+    products_ = kMemory * products_ + whitened.dot(last_);
     last_ = whitened;
     ++plots_;
   }
-
-  /// uₙ·uₙ₋₁ of the last two; 0 before the second.
-  [[nodiscard]] double last_product() const noexcept { return last_product_; }
 
   /// How many there have been.
   [[nodiscard]] int plots() const noexcept { return plots_; }
@@ -62,7 +58,6 @@ class InnovationConsistency {
   void archive(Archive& fields) {
     fields(squares_);
     fields(products_);
-    fields(last_product_);
     fields(last_);
     fields(plots_);
   }
@@ -72,7 +67,7 @@ class InnovationConsistency {
 
   static double forgotten(int plots) noexcept { return std::pow(kMemory, plots); }
 
-  double squares_ = 0.0, products_ = 0.0, last_product_ = 0.0;
+  double squares_ = 0.0, products_ = 0.0;
   Vec<double, kMeasurements> last_ = Vec<double, kMeasurements>::Zero();
   int plots_ = 0;
 };

@@ -14,9 +14,11 @@ struct Look {
   double visibility = 1.0;  ///< probability that the radar can see the target
   double looked_s = 0.0;    ///< when the radar last looked: a plot or a miss
   double seen_s = -std::numeric_limits<double>::infinity();  ///< when it saw the target last
-  double passed_rad = 0.0;    ///< angle of the beam when it last passed the target, unwrapped
-  double look_rad = 0.0;      ///< before that angle the beam does not reach its gate
-  int misses = 0;             ///< of this radar, in a row
+  double passed_rad = 0.0;  ///< angle of the beam when it last passed the target, unwrapped
+  double look_rad = 0.0;    ///< before that angle the beam does not reach its gate
+  int misses = 0;           ///< of this radar, in a row
+  Vec<double, 2> innovation = Vec<double, 2>::Zero();  ///< the last one, whitened
+  double product = 0.0;                                ///< of the last two
   LearnedPlots learned = {};  ///< what the clutter map has learned of the target's own plots
 
   /// The beam has missed turns of that angle.
@@ -32,6 +34,8 @@ struct Look {
     fields(passed_rad);
     fields(look_rad);
     fields(misses);
+    fields(innovation);
+    fields(product);
     learned.archive(fields);
   }
 };

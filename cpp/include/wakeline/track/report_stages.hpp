@@ -40,7 +40,7 @@ class ReportStages {
     identity.note(report, state().radar.max_speed_mps);
     weigh_identity(report, identity);
     Track* track = identify(number);
-    if (track == nullptr && agreeing_.empty() && identity.in_a_row > 0) {
+    if (track == nullptr && !is_near_ && identity.in_a_row > 0) {
       track = start_reported(report, identity);
       if (track != nullptr) {
         (void)identify(number);
@@ -69,9 +69,10 @@ class ReportStages {
   static constexpr double kOtherVelocities_per_m2s2 = 1e-3;  ///< the same of velocities
   static constexpr double kMostReportEvidence = 4.0;         ///< of a report, log odds
   static constexpr double kReportGate = 16.0;                ///< squared standard deviations
-  static constexpr double kVelocityGate = 25.0;  ///< the same of the velocity of a target that the
-  static constexpr double kAltered = 0.1;        ///< radar sees, and of it what may not show yet
-  static constexpr double kSure = 0.9;  ///< a report updates a track that it is of by this much
+  static constexpr double kVelocityGate = 25.0;              ///< the same of the velocity
+  static constexpr double kNarrow = 0.36;  ///< of both, for a report that contradicts others
+  static constexpr double kUnseen = 0.1;   ///< of the velocity, an alteration not yet tracked
+  static constexpr double kSure = 0.9;     ///< a report updates a track that it is of by this much
 
   [[nodiscard]] const RadarState& state() const noexcept { return picture_.state(); }
 
@@ -126,25 +127,22 @@ class ReportStages {
                state().radar.max_speed_mps * std::abs(dt_s);
   }
 
-  /// Whether a report that contradicts itself, or says another velocity than a track has, is better
-  /// left out: the radar sees the target.
-  [[nodiscard]] bool contradicts_radar(const PositionReport& report, const Identity& identity,
-                                       const Track& track) const noexcept {
-    if (!report.has_velocity() || !picture_.is_seen_by_radar(track)) return false;
-    if (!identity.velocity.fits()) return identity.velocity.contradicts();
-    const Gaussian<4> then = picture_.belief_at(track, report.time_s);
-    const Vec<double, 2> velocity_mps(then.mean[1], then.mean[3]);
+  /// The squared distance, in standard deviations, of a reported velocity from that of a track.
+  [[nodiscard]] static double velocity_distance(const PositionReport& report,
+                                                const Gaussian<4>& then) noexcept {
     const double report_m2s2 = report.velocity_std_mps * report.velocity_std_mps +
-                               kAltered * kAltered * report.velocity_mps.squaredNorm();
+                               kUnseen * kUnseen * report.velocity_mps.squaredNorm();
     const Cholesky<2> factor(velocity_covariance(then) +
                              report_m2s2 * Mat<double, 2, 2>::Identity());
-    return factor.ok() && factor.squared_norm(report.velocity_mps - velocity_mps) > kVelocityGate;
+    const Vec<double, 2> velocity_mps(then.mean[1], then.mean[3]);
+    return factor.ok() ? factor.squared_norm(report.velocity_mps - velocity_mps) : 0.0;
   }
 
   /// Weighs all tracks by a report, and notes which of them it agrees with, in `agreeing_`. Where
   /// it fits several, the better ones gain as much on the others as their likelihoods differ.
   void weigh_identity(const PositionReport& report, Identity& identity) noexcept {
     agreeing_.clear();
+    is_near_ = false;
     evidence_.assign(picture_.tracks.slots().size(), -std::numeric_limits<double>::infinity());
     for (Identity::Candidate& candidate : identity.candidates)
       if (candidate.slot >= 0 && !(picture_.tracks.in_use(candidate.slot) &&
@@ -154,17 +152,22 @@ class ReportStages {
     for (std::size_t k = 0; k < evidence_.size(); ++k) {
       const Track& track = picture_.tracks.at(picture_.tracks.slots()[k]);
       if (!is_about(track, report)) continue;
-      const Gaussian<2> then = position_in(picture_.belief_at(track, report.time_s));
+      const Gaussian<4> belief = picture_.belief_at(track, report.time_s);
+      const Gaussian<2> then = position_in(belief);
       const Gaussian<2> fix = reported_position(report, track, 0.0);
       const Cholesky<2> factor(fix.covariance + then.covariance);
       if (!factor.ok()) continue;
       const double distance = factor.squared_norm(fix.mean - then.mean);
       evidence_[k] = -0.5 * (distance + factor.log_determinant()) -
                      std::log(2.0 * kPi<double> * kOtherVessels_per_m2);
-      const bool contradicts = contradicts_radar(report, identity, track);
-      if (contradicts) evidence_[k] = std::min(evidence_[k], 0.0);
+      is_near_ = is_near_ || distance <= kReportGate;
+      // Where the radar sees the target, a report that may be wrong is better left out.
+      const bool seen = report.has_velocity() && picture_.is_seen_by_radar(track);
+      const double narrow = seen && identity.velocity.contradicts() ? kNarrow : 1.0;
+      const bool differs = seen && velocity_distance(report, belief) > narrow * kVelocityGate;
+      if (differs && identity.velocity.fits()) evidence_[k] = std::min(evidence_[k], 0.0);
       best = std::max(best, evidence_[k]);
-      if (distance <= kReportGate && !contradicts) agreeing_.push_back(track.slot);
+      if (distance <= narrow * kReportGate && !differs) agreeing_.push_back(track.slot);
     }
     const double excess = std::max(best - kMostReportEvidence, 0.0);
     for (std::size_t k = 0; k < evidence_.size(); ++k) {
@@ -269,6 +272,7 @@ class ReportStages {
 
   Picture<Estimator, Steps>& picture_;
   std::vector<int> agreeing_;     ///< slots of the tracks with which the report at hand agrees
+  bool is_near_ = false;          ///< its position is in the gate of one
   std::vector<double> evidence_;  ///< of it, by place in the list of tracks
 };
 

@@ -615,7 +615,12 @@ class ScanStages {
     const Vec<double, 2> innovation =
         whitened_innovation(position_in(track.kinematics), best.z, best.nominal_r);
     track.nis = innovation.squaredNorm();
-    if (is_seen(probabilities)) track.consistency.add(innovation);
+    if (is_seen(probabilities)) {
+      track.consistency.add(innovation);
+      Look& look = look_at(track);
+      look.product = innovation.dot(look.innovation);
+      look.innovation = innovation;
+    }
     track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
   }
 
@@ -627,7 +632,7 @@ class ScanStages {
     PersistentErrors& errors = state().persistent_errors;
     constexpr double kCertain = 0.7;
     if (is_sure(track) && probabilities.of_candidate[at] > kCertain)
-      errors.learn(track.nis, track.consistency.last_product());
+      errors.learn(track.nis, look_at(track).product);
     const ConvertedErrors& of_plot = state().plots[best.plot].errors;
     const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
     const Mat<double, 2, 2> position_m2 = position_in(track.kinematics).covariance;
