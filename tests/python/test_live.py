@@ -407,6 +407,27 @@ def test_vessels_that_report_are_tracks_before_a_radar_turns():
     assert session.command({"command": "rename", "track_id": 1, "name": "Mary"}) == {"ok": True}
 
 
+def test_a_vessel_disagrees_for_as_long_as_its_reports_do():
+    session = wl.live.Session({"radar": [JOYRIDE | {"position_deg": [54.0, 10.0]}]})
+    for k in range(150):
+        t, north_m = 3.0 * k, 4000.0 - 15.0 * k
+        bearing_rad = math.atan2(300.0, north_m)
+        plot = {"time_s": t, "range_m": math.hypot(north_m, 300.0), "bearing_rad": bearing_rad}
+        session.feed(t, "radar", json.dumps({"radar": "A"} | plot).encode())
+        speed_mps = 5.0 if t < 150.0 or t > 360.0 else 0.0
+        report = {"source": "ais", "identity": "257000001", "time_s": t, "north_m": north_m}
+        report |= {"east_m": 300.0, "course_rad": math.pi, "speed_mps": speed_mps}
+        if k % 3 == 0:
+            session.feed(t, "ais", json.dumps({"report": report}).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        session.feed(t, "radar", json.dumps({"radar": "A"} | mark).encode())
+        disagrees = [identity for _, identity, _ in session.disagreements()]
+        if 165.0 < t <= 360.0:
+            assert disagrees == ["257000001"], t
+        if t < 150.0 or t > 440.0:
+            assert disagrees == [], t
+
+
 def test_operators_name_drop_and_acquire():
     session = joyride_session()
     for t, line in joyride_lines(60):

@@ -289,15 +289,18 @@ class TrackEngine:
         self._heard = set(range(len(self.radars)) if heard is None else heard)
         self._reported = True
 
-    def report(self, **report: Any) -> list[dict[str, Any]]:
-        """Take a position report with an identity; the events of tracks.
+    def report(self, **report: Any) -> tuple[list[dict[str, Any]], int]:
+        """Take a position report with an identity.
 
         The arguments are those of ``Tracker.report``; velocities that are not finite are unknown.
+        The events of tracks, and the number of the track that the vessel is believed to be where
+        the report did not update it, else 0.
         """
         if not math.isfinite(report["vnorth_mps"] + report["veast_mps"]):
             report |= {"vnorth_mps": None, "veast_mps": None}
         self._reported = True
-        return _events(self._tracker.report(**report).events)
+        result = self._tracker.report(**report)
+        return _events(result.events), result.track_id if result.status == wl.Status.gated else 0
 
 
 def _rows(table: wl.track.TrackTable) -> Iterator[LiveTrack]:

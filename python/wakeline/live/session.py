@@ -278,7 +278,10 @@ class Session:
 
     def _report(self, **report: Any) -> None:
         """Give a report with an identity to the tracker."""
-        self._tracker_events(self.tracker.report(**report))
+        events, left_out = self.tracker.report(**report)
+        self._tracker_events(events)
+        if (left_out, report["identity"]) in self._disagree:  # it lasts
+            self._disagree[left_out, report["identity"]] = self.tracker.time_s
 
     def _take_json(self, time_s: float, source: Source, line: tuple[str, str, dict]) -> None:
         kind, radar, values = line
