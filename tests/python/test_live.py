@@ -1,11 +1,9 @@
 """A live session without network: what it is fed decides its tracks, bit for bit."""
 
 import csv
-import functools
 import itertools
 import json
 import math
-import operator
 import re
 import shutil
 import subprocess
@@ -17,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wakeline as wl
+from test_cli_navigate import sentence as sentence_of
 from wakeline._engine.video import Cat240Encoder
 from wakeline.live.asterix_feed import BlockAssembly
 from wakeline.live.config import config_of
@@ -289,11 +288,6 @@ def test_without_a_position_tracks_are_frozen_and_the_operator_is_told():
     assert session.status()["radars"]["A"]["unused_plots"] > 0
 
 
-def sentence(body):
-    checksum = functools.reduce(operator.xor, body.encode())
-    return f"${body}*{checksum:02X}\r\n".encode()
-
-
 def test_a_heading_that_is_lost_is_one_alarm_until_it_is_back():
     session = wl.live.Session({"radar": [JOYRIDE | {"azimuth": "bow"}]})
     alarms = []
@@ -302,9 +296,9 @@ def test_a_heading_that_is_lost_is_one_alarm_until_it_is_back():
     )
     for k in range(600):
         t = 1000.0 + 0.5 * k
-        session.feed(t, "nmea", sentence("GPGLL,5400.000,N,01000.000,E,,A"))
+        session.feed(t, "nmea", sentence_of("GPGLL,5400.000,N,01000.000,E,,A").encode())
         if not 100 <= k < 300:
-            session.feed(t, "nmea", sentence("HEHDT,30.0,T"))
+            session.feed(t, "nmea", sentence_of("HEHDT,30.0,T").encode())
         mark = {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}
         if k % 5 == 0:
             session.feed(t, "radar", json.dumps({"radar": "A", "sector": mark}).encode())

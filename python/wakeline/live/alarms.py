@@ -22,7 +22,8 @@ import wakeline as wl
 from wakeline._brief import quoted
 from wakeline._checks import not_negative, whole_number
 
-from .lines import append_whole, in_words
+from .lines import append_whole
+from .problems import in_words
 from .zones import Crossing, OwnPlace, Zone, Zones
 
 OWN_SHIP = 0

@@ -12,7 +12,7 @@ from urllib.parse import parse_qs, urlsplit
 
 import wakeline as wl
 from wakeline._brief import cut, quoted
-from wakeline.tracking.settings import KEYS, Settings, SettingsError, read_toml
+from wakeline.tracking.settings import Settings, SettingsError, read_toml
 
 from .zones import Zone, placed
 
@@ -32,6 +32,7 @@ OUT_FORMATS = ("json", "ttm", "tll", "cat062", "cat010")
 AZIMUTHS = ("north", "bow")
 
 
+_SECTIONS = ("session", "own", "input", "output", "radar", "guard_zone")
 _GUARD_ZONE = """\
 # [[guard_zone]]
 # Alarms when a target enters. kind is guard, exclusion (plots inside start no track) or land.
@@ -365,21 +366,12 @@ def config_of(document: Mapping[str, Any], path: str | Path = "settings") -> Liv
     session = _read_one(rest.pop("session", {}), "session", SessionConfig, path)
     own = _read_one(rest.pop("own", {}), "own", OwnConfig, path)
     common = given if isinstance(given, dict) else {}
-    _check_sections(rest, path)
-    settings = Settings.of(rest | ({"radar": common} if common else {}), path)
+    settings = Settings.of(rest | ({"radar": common} if common else {}), path, _SECTIONS)
     radars = () if common else _read_radars(given, settings, path)
     try:
         return LiveConfig(inputs, outputs, radars, own, session, settings, tuple(guard_zones))
     except SettingsError as error:
         raise SettingsError(f"{path}: {error}") from None
-
-
-def _check_sections(rest: Mapping[str, Any], path: str | Path) -> None:
-    ours = ("session", "own", "input", "output", "radar", "guard_zone")
-    known = tuple(dict.fromkeys((*ours, *KEYS, "zone")))
-    for name in rest:
-        if name not in known:
-            raise SettingsError(f"{path}: unknown section [{cut(name)}]; known: {', '.join(known)}")
 
 
 def _read_radars(given: Any, settings: Settings, path: str | Path) -> tuple[RadarConfig, ...]:

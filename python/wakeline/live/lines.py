@@ -66,9 +66,3 @@ def append_whole(file: FileIO, octets: bytes) -> None:
             with contextlib.suppress(OSError):  # as of a device
                 file.truncate(end)
         raise
-
-
-def in_words(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror
-    return str(error)

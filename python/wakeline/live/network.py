@@ -23,7 +23,8 @@ from wakeline.recording.containers import datagrams_of
 
 from . import signalk
 from .config import InputConfig, OutputConfig, SettingsError
-from .lines import append_whole, in_words
+from .lines import append_whole
+from .problems import in_words
 
 Take = Callable[[str, list[tuple[float, bytes]]], None]
 """Called with the name of an input and its messages: times and octets."""

@@ -31,3 +31,10 @@ class Problems:
             kind = "other"
         self.count[kind] += times
         self.last = f"{kind}: {cut(reason)}"
+
+
+def in_words(error: Exception) -> str:
+    """The reason of an error, without its number."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error)

@@ -15,8 +15,8 @@ from typing import Any
 
 from wakeline.recording import RecordingError
 
-from .lines import in_words
 from .network import NetworkInput, NetworkOutput, close_all, now_s
+from .problems import in_words
 from .record import Record, Recorder, at_microsecond, read_session, segments_of
 from .session import CLOCK, Session
 

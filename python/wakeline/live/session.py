@@ -404,11 +404,12 @@ class Session:
         self.frozen = ""
         end, own = antenna
         plot_time_s, range_m, bearing_rad, covariance = columns(sector.plots)
+        place_m = _moved(own, plot_time_s - sector.time_s)
         if len(sector.plots) and not radar.position_deg:
             range_m, bearing_rad = self._seen_from(
-                sector.time_s, own, radar, plot_time_s, range_m, bearing_rad, from_bow
+                place_m, radar, plot_time_s, range_m, bearing_rad, from_bow
             )
-        kept = self._outside(*_moved(own, plot_time_s - sector.time_s), range_m, bearing_rad)
+        kept = self._outside(place_m, range_m, bearing_rad)
         if not kept.all():
             feed.excluded += int(np.sum(~kept))
             plot_time_s, range_m, bearing_rad = (
@@ -446,19 +447,17 @@ class Session:
 
     def _outside(
         self,
-        own_north_m: np.ndarray,
-        own_east_m: np.ndarray,
+        place_m: np.ndarray,
         range_m: np.ndarray,
         bearing_rad: np.ndarray,
     ) -> np.ndarray:
-        """Whether plots (n,) are outside exclusion zones and land."""
+        """Whether plots (n,) from places (n, 2) are outside exclusion zones and land."""
         kept = np.ones(len(range_m), dtype=bool)
         for watcher in self.watchers:
             keeps_out = getattr(watcher, "keeps_out", None)
             if keeps_out is not None and len(range_m):
-                north_m = own_north_m + range_m * np.cos(bearing_rad)
-                east_m = own_east_m + range_m * np.sin(bearing_rad)
-                kept &= ~keeps_out(np.column_stack([north_m, east_m]))
+                direction = np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)])
+                kept &= ~keeps_out(place_m + range_m[:, np.newaxis] * direction)
         return kept
 
     def _antenna(
@@ -480,20 +479,19 @@ class Session:
 
     def _seen_from(
         self,
-        end_s: float,
-        own: OwnShip,
+        place_m: np.ndarray,
         radar: RadarConfig,
         time_s: np.ndarray,
         range_m: np.ndarray,
         bearing_rad: np.ndarray,
         from_bow: bool,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Ranges and true bearings of plots from where own ship's velocity has the antenna then.
+        """Ranges and true bearings of plots (n,) from places (n, 2).
 
-        That is what a tracker takes, which has own ship at the end of the sector alone.
+        A tracker, which has own ship at the end of the sector alone, takes plots to be seen from
+        where the velocity of own ship had the antenna.
         """
         ranges, bearings = np.empty(len(time_s)), np.empty(len(time_s))
-        expected_m = np.stack(_moved(own, time_s - end_s), axis=1)
         rows = zip(time_s.tolist(), range_m.tolist(), bearing_rad.tolist(), strict=True)
         for k, (when_s, r, b) in enumerate(rows):
             antenna = self._antenna(radar, when_s, needs_heading=from_bow)
@@ -502,8 +500,8 @@ class Session:
                 continue
             pose, then = antenna
             true_rad = b + pose.heading_rad if from_bow else b
-            north_m = then.north_m - expected_m[k, 0] + r * math.cos(true_rad)
-            east_m = then.east_m - expected_m[k, 1] + r * math.sin(true_rad)
+            north_m = then.north_m - place_m[k, 0] + r * math.cos(true_rad)
+            east_m = then.east_m - place_m[k, 1] + r * math.sin(true_rad)
             ranges[k], bearings[k] = math.hypot(north_m, east_m), math.atan2(east_m, north_m)
         return ranges, bearings
 
@@ -915,9 +913,11 @@ def _with_true_bearings(own: OwnShip) -> OwnShip:
     return OwnShip(**(own.as_dict() | {"heading_std_rad": 0.0}))
 
 
-def _moved(own: OwnShip, ahead_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where an antenna is so long after, by its velocity: north and east, m, (n,) each."""
-    return own.north_m + ahead_s * own.vnorth_mps, own.east_m + ahead_s * own.veast_mps
+def _moved(own: OwnShip, ahead_s: np.ndarray) -> np.ndarray:
+    """Where an antenna is so long after (n,), by its velocity: north and east, m, (n, 2)."""
+    return np.column_stack(
+        [own.north_m + ahead_s * own.vnorth_mps, own.east_m + ahead_s * own.veast_mps]
+    )
 
 
 def _text(octets: bytes) -> str:

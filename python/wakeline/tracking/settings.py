@@ -112,15 +112,20 @@ class Settings:
         return cls(**{section: _defaults(section) for section in KEYS})
 
     @classmethod
-    def of(cls, document: Mapping[str, Any], path: str | Path) -> Settings:
-        """The defaults, changed by the sections of a document; `path` is its name in messages."""
+    def of(
+        cls, document: Mapping[str, Any], path: str | Path, beside: Iterable[str] = ()
+    ) -> Settings:
+        """The defaults, changed by the sections of a document.
+
+        In messages `path` is its name, and `beside` are sections that are read elsewhere.
+        """
         settings = cls.default()
         for section, values in document.items():
             if section == "zone":
                 settings = replace(settings, zones=_read_zones(values, path))
                 continue
             if section not in KEYS:
-                known = _one_of([*KEYS, "zone"])
+                known = _one_of(dict.fromkeys((*beside, *KEYS, "zone")))
                 raise SettingsError(f"{path}: unknown section {cut(section)}; {known}")
             settings = _changed(settings, section, values, path)
         _check_zones(settings, path)

@@ -308,23 +308,36 @@ TEST(Sectors, VesselsAllAroundOwnShipAreShownOnceEach) {
   }
 }
 
+/// Gives plots to a tracker in even sectors, of which some are left out and whose ends are by so
+/// much before the begin of the next; `f(report)` after each.
+template <class Given, class Function>
+void give_sectors(VesselTracker& tracker, const std::vector<Plot>& plots, int sectors, int turns,
+                  const Given& given, const Function& f, double gap_rad = 0.0) {
+  std::size_t next = 0;
+  for (int k = 0; k < turns * sectors; ++k) {
+    const double from_rad = kTurn * k / sectors, to_rad = kTurn * (k + 1) / sectors;
+    const double time_s = Antenna{}.time_s(to_rad);
+    const std::size_t begin = next;
+    while (next < plots.size() && plots[next].time_s <= time_s) ++next;
+    if (!given(k)) continue;
+    const ScanReport report = tracker.sector(
+        {0, from_rad, to_rad - gap_rad, time_s, std::span(plots).subspan(begin, next - begin)});
+    EXPECT_EQ(report.status, Status::kOk);
+    f(report);
+  }
+}
+
 TEST(Sectors, ATargetInABlindSectorCoastsByTimeAndOthersAreUpdated) {
   VesselTracker tracker = make_tracker();
   const std::vector<Boat> two{boats()[2], boats()[3]};  // bearings of about 150 and 83 degrees
   const std::vector<Plot> plots = record(two, {}, 30 * kTurn, 6);
   std::vector<Event> events;
-  std::size_t next = 0;
-  for (int k = 0; k < 16 * 30; ++k) {
-    const double from_rad = kTurn * k / 16, to_rad = kTurn * (k + 1) / 16;
-    const double time_s = Antenna{}.time_s(to_rad);
-    const std::size_t begin = next;
-    while (next < plots.size() && plots[next].time_s <= time_s) ++next;
-    if (k >= 16 * 15 && k % 16 >= 5 && k % 16 <= 8) continue;  // 112 to 202 degrees
-    const ScanReport report = tracker.sector(
-        {0, from_rad, to_rad, time_s, std::span(plots).subspan(begin, next - begin)});
-    EXPECT_EQ(report.status, Status::kOk);
-    events.insert(events.end(), report.events.begin(), report.events.end());
-  }
+  give_sectors(
+      tracker, plots, 16, 30,
+      [](int k) { return k < 16 * 15 || k % 16 < 5 || k % 16 > 8; },  // not 112 to 202 degrees
+      [&](const ScanReport& report) {
+        events.insert(events.end(), report.events.begin(), report.events.end());
+      });
   std::set<std::int64_t> coasting;
   for (const Event& event : events)
     if (event.kind == TrackEvent::kCoasting) {
@@ -347,18 +360,9 @@ std::vector<int> hits_in(int sectors, const std::function<bool(double turn)>& gi
                          double gap_rad = 0.0) {
   VesselTracker tracker = make_tracker();
   const std::vector<Plot> plots = record(boats(), {}, 20 * kTurn, 12);
-  std::size_t next = 0;
-  for (int k = 0; k < 20 * sectors; ++k) {
-    const double from_rad = kTurn * k / sectors, to_rad = kTurn * (k + 1) / sectors;
-    const double time_s = Antenna{}.time_s(to_rad);
-    const std::size_t begin = next;
-    while (next < plots.size() && plots[next].time_s <= time_s) ++next;
-    const Sector sector{0, from_rad, to_rad - gap_rad, time_s,
-                        std::span(plots).subspan(begin, next - begin)};
-    if (!given(double(k) / sectors)) continue;
-    const ScanReport report = tracker.sector(sector);
-    EXPECT_EQ(report.status, Status::kOk);
-  }
+  give_sectors(
+      tracker, plots, sectors, 20, [&](int k) { return given(double(k) / sectors); },
+      [](const ScanReport&) {}, gap_rad);
   std::vector<int> hits;
   for (const Boat& boat : boats()) {
     const Track* track = track_at(tracker, boat.at(20 * kPeriod_s), 80.0);
