@@ -65,6 +65,14 @@ def written(session):
 # ------------------------------------------------------------------ tracks
 
 
+def test_two_outputs_have_different_names():
+    session = joyride_session()
+    output = session.add_output("file:tracks.jsonl")
+    with pytest.raises(SettingsError, match=re.escape("file:tracks.jsonl")):
+        session.add_output("file:tracks.jsonl?format=ttm")
+    assert session.outputs == {"file:tracks.jsonl": output}
+
+
 def test_plots_as_json_lines_give_the_track_of_the_recording():
     session, whole = joyride_session(), wl.track_recording("joyride")
     lines = written(session)
@@ -909,6 +917,7 @@ def test_printed_settings_read_back_the_same(tmp_path):
         ({"own": {"dwell_s": -1.0}}, "dwell_s"),
         ({"own": {"place_deg": [1.0]}}, "place_deg"),
         ({"own": {"dwell_s": "long"}}, "dwell_s"),
+        ({"own": {"position": ["GPGGA@gnss", "HDT"]}}, "HDT"),
         ({"guard_zone": [{"outline_deg": [[54, 10], [95, 10], [54, 11]]}]}, "outline_deg"),
         ({"guard_zone": [{"outline_deg": [[54, 10], [55, 10]]}]}, "guard_zone"),
         ({"harbor": {}}, "harbor"),

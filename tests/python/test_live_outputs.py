@@ -104,6 +104,27 @@ def test_a_lost_target_is_reported_once():
     assert len(lost) == 3
 
 
+def test_targets_without_a_number_are_counted():
+    """TTM has a hundred numbers, tracks of ASTERIX have more."""
+    session = wl.live.Session(
+        {"radar": [RADAR | {"period_s": 2.5}], "own": {"place_deg": ORIGIN_DEG}}
+    )
+    outputs = [
+        session.add_output(f"udp://127.0.0.1:1?name={f}&format={f}") for f in ("ttm", "cat062")
+    ]
+    for turn in range(6):
+        time_s = 2.5 * turn
+        plots = [
+            {"time_s": time_s, "range_m": 1000.0 + 100.0 * (k % 7), "bearing_rad": 0.05 * k}
+            for k in range(125)
+        ]
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": time_s}}
+        for line in (*plots, mark):
+            session.feed(time_s, "radar", json.dumps(line).encode())
+    assert len(session.shown.track_id) == 125
+    assert [output.status()["waiting"] for output in outputs] == [25, 0]
+
+
 def test_pynmea2_reads_every_sentence():
     pynmea2 = pytest.importorskip("pynmea2")
     sent, _ = run("ttm", 60.0)

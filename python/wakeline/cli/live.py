@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from wakeline._brief import many
 from wakeline.live.config import (
     IN_FORMATS,
     OUT_FORMATS,
@@ -311,6 +312,9 @@ def status_line(status: dict[str, Any]) -> str:
     for name, one in (*status["inputs"].items(), *status["outputs"].items()):
         if one["failing"]:
             parts.append(f"{name}: {one['connection']}")
+    for name, one in status["outputs"].items():
+        if one["waiting"]:
+            parts.append(f"{name}: no number left for {many(one['waiting'], 'track')}")
     parts += status["file_problems"]
     if status["frozen"]:
         parts.append(status["frozen"])

@@ -29,6 +29,14 @@ IN_SCHEMES = (
 OUT_SCHEMES = ("udp", "tcp", "tcp-listen", "serial", "file", "stdout")
 IN_FORMATS = ("", "nmea", "json", "cat240", "cat048", "cat010", "signalk", "spokes")
 OUT_FORMATS = ("json", "ttm", "tll", "cat062", "cat010")
+# Sentences of each quantity, the best first; those of JSON lines and of Signal K come from a system
+# that has chosen already.
+SENTENCES = {
+    "position": ("JSON", "SIGNALK", "GGA", "GNS", "RMC", "GLL", "VDO"),
+    "heading": ("JSON", "SIGNALK", "HDT", "THS", "HDG", "HDM", "VHW"),
+    "velocity": ("JSON", "SIGNALK", "RMC", "VTG", "VDO"),
+    "turn": ("ROT",),
+}
 AZIMUTHS = ("north", "bow")
 
 
@@ -214,6 +222,11 @@ class OwnConfig:
         for name in ("dwell_s", "position_age_s", "heading_age_s", "velocity_age_s"):
             if not getattr(self, name) >= 0.0:
                 raise SettingsError(f"{name} must be 0 or more, got {getattr(self, name)}")
+        for name in ("position", "heading", "velocity"):
+            for pattern in getattr(self, name):
+                sentence, known = pattern.partition("@")[0], ("", *SENTENCES[name])
+                if sentence not in known and sentence[2:] not in known[1:]:
+                    _check_choice(name, sentence, known)
 
 
 @dataclass(frozen=True)
@@ -288,10 +301,10 @@ class LiveConfig:
     def __post_init__(self) -> None:
         for name in ("inputs", "outputs"):
             named = tuple(_named(each) for each in getattr(self, name))
-            _check_once(name, [each.name for each in named])
+            check_once(name, [each.name for each in named])
             object.__setattr__(self, name, named)
         object.__setattr__(self, "radars", tuple(self.radars) or (RadarConfig(),))
-        _check_once("radars", [radar.name for radar in self.radars])
+        check_once("radars", [radar.name for radar in self.radars])
         for one in self.inputs:
             if one.radar:
                 _check_choice("radar", one.radar, [radar.name for radar in self.radars])
@@ -478,7 +491,8 @@ def _check_place(name: str, place: Sequence[float]) -> None:
         raise SettingsError(f"{name} must be latitude and longitude in degrees, got {place!r}")
 
 
-def _check_once(name: str, names: Sequence[str]) -> None:
+def check_once(name: str, names: Sequence[str]) -> None:
+    """Raise `SettingsError` when a name is there twice."""
     twice = sorted({one for one in names if names.count(one) > 1})
     if twice:
         raise SettingsError(f"{name} must have different names, got {quoted(twice[0])} twice")

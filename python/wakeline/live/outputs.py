@@ -49,6 +49,11 @@ class Output:
     def event(self, session: Session, event: dict[str, Any]) -> None:
         """Send an event."""
 
+    @property
+    def waiting(self) -> int:
+        """Tracks shown for which its receiver has no free number."""
+        return 0
+
     def save(self) -> bytes:
         """The numbers of its targets, empty if it has none."""
         return b""
@@ -72,6 +77,7 @@ class Output:
             "octets": self.octets,
             "sent": self.sent,
             "dropped": self.dropped,
+            "waiting": self.waiting,
         }
 
 
@@ -110,6 +116,10 @@ class WireOutput(Output, abc.ABC):
         }
         for octets in self._feed.update(session.time_s, **columns, **self._more(session)):
             self._send(octets)
+
+    @property
+    def waiting(self) -> int:
+        return 0 if self._feed is None else self._feed.waiting
 
     def save(self) -> bytes:
         return b"" if self._feed is None else self._feed.save()

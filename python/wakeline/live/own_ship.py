@@ -10,16 +10,8 @@ from typing import Any, NamedTuple
 
 from wakeline.measurement import OwnShip
 
-from .config import OwnConfig
+from .config import SENTENCES, OwnConfig
 
-# Sentences of each quantity, the best first; those of JSON lines and of Signal K come from a system
-# that has chosen already.
-ORDER = {
-    "position": ("JSON", "SIGNALK", "GGA", "GNS", "RMC", "GLL", "VDO"),
-    "heading": ("JSON", "SIGNALK", "HDT", "THS", "HDG", "HDM", "VHW"),
-    "velocity": ("JSON", "SIGNALK", "RMC", "VTG", "VDO"),
-    "turn": ("ROT",),
-}
 _KEPT = 256  # readings of a source
 _YAW_RAD_S = math.radians(1.0)  # unknown rate of turn of a ship in waves
 _MOST_RATE_RAD_S = math.radians(30.0)
@@ -159,7 +151,7 @@ class Ranked:
         for rank, pattern in enumerate(self._preferred):
             if key.fits(pattern):
                 return rank
-        order = ORDER[self.name]
+        order = SENTENCES[self.name]
         place = order.index(key.sentence) if key.sentence in order else len(order)
         return len(self._preferred) + place
 

@@ -20,7 +20,7 @@ from wakeline.tracking import MODE_NAMES
 
 from . import json_lines
 from .ais import AisPicture, AisVessel
-from .config import LiveConfig, OutputConfig, RadarConfig, config_of, read_config
+from .config import LiveConfig, OutputConfig, RadarConfig, check_once, config_of, read_config
 from .engine import TrackEngine
 from .metrics import metrics_of
 from .outputs import Output, make_output
@@ -577,9 +577,16 @@ class Session:
             listener(kind, values)
 
     def add_output(self, config: OutputConfig | str) -> Output:
-        """Add a receiver of tracks; its `send` is called with octets."""
+        """Add a receiver of tracks; its `send` is called with octets.
+
+        Raises
+        ------
+        SettingsError
+            When there is one of that name.
+        """
         if isinstance(config, str):
             config = LiveConfig(outputs=(OutputConfig(config),)).outputs[0]
+        check_once("outputs", [*self.outputs, config.name])
         self.outputs[config.name] = make_output(config)
         return self.outputs[config.name]
 
