@@ -57,7 +57,8 @@ TEST(ModePositions, AreTheMixtureOfTheModes) {
       const bool gated = expected.least_nis <= threshold;
       EXPECT_EQ(modes.gate(z, r, threshold), gated);
       if (gated) {
-        EXPECT_LE((z - position).cwiseAbs().maxCoeff(), modes.reach_m(position, 400.0, threshold));
+        EXPECT_LE((z - position).cwiseAbs().maxCoeff(),
+                  modes.about(position).reach_m(400.0, threshold));
       }
       const bool is_excluded = modes.along(z - position, position).excludes(z, r, threshold);
       EXPECT_FALSE(gated && is_excluded);
@@ -99,7 +100,7 @@ TEST(ModePositions, AskAnEstimatorThatDoesNotShowItsModes) {
   EXPECT_EQ(modes.evidence({5.0, 0.0}, r).likelihood, 7.0);
   EXPECT_TRUE(modes.gate({5.0, 0.0}, r, 6.0));
   EXPECT_FALSE(modes.gate({6.1, 0.0}, r, 6.0));
-  EXPECT_EQ(modes.reach_m({0.0, 0.0}, 1.0, 6.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(modes.about({0.0, 0.0}).reach_m(1.0, 6.0), std::numeric_limits<double>::infinity());
   EXPECT_FALSE(modes.along({1.0, 0.0}, {0.0, 0.0}).excludes({1e6, 0.0}, r, 6.0));
 }
 

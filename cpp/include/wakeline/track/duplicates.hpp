@@ -95,36 +95,33 @@ class Duplicates {
   }
 
  private:
-  /// The narrowest strips about some positions: along two bearings, and across the middle one, of
-  /// which the opposite makes the same strip.
+  /// The narrowest rectangle about some positions along the middle of two bearings.
   class Outline {
    public:
     Outline(double from_rad, double to_rad) noexcept {
       const double middle_rad = from_rad + (to_rad - from_rad) / 2;
-      for (int k = 0; k < 3; ++k) {
-        const double rad = k == 0 ? from_rad : k == 1 ? to_rad : middle_rad + kPi<double> / 2;
-        across_.row(k) << -std::sin(rad), std::cos(rad);
-        // No two places are farther apart so than they are north or east.
-        across_.row(k) /= across_.row(k).cwiseAbs().sum();
-      }
+      axes_ << std::cos(middle_rad), std::sin(middle_rad), -std::sin(middle_rad),
+          std::cos(middle_rad);
+      // No two places are farther apart so than they are north or east.
+      axes_ /= axes_.row(0).cwiseAbs().sum();
     }
 
     void add(const Vec<double, 2>& position) noexcept {
-      const Vec<double, 3> across_m = across_ * position;
-      least_m_ = least_m_.cwiseMin(across_m);
-      greatest_m_ = greatest_m_.cwiseMax(across_m);
+      const Vec<double, 2> place_m = axes_ * position;
+      least_m_ = least_m_.cwiseMin(place_m);
+      greatest_m_ = greatest_m_.cwiseMax(place_m);
     }
 
     /// A position is not nearer to any of these, north or east; negative inside.
     [[nodiscard]] double apart_m(const Vec<double, 2>& position) const noexcept {
-      const Vec<double, 3> across_m = across_ * position;
-      return (least_m_ - across_m).cwiseMax(across_m - greatest_m_).maxCoeff();
+      const Vec<double, 2> place_m = axes_ * position;
+      return (least_m_ - place_m).cwiseMax(place_m - greatest_m_).maxCoeff();
     }
 
    private:
     static constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    Mat<double, 3, 2> across_;
-    Vec<double, 3> least_m_ = Vec<double, 3>::Constant(kNowhere), greatest_m_ = -least_m_;
+    Mat<double, 2, 2> axes_;
+    Vec<double, 2> least_m_ = Vec<double, 2>::Constant(kNowhere), greatest_m_ = -least_m_;
   };
 
   /// Indexes the tracks that may be on the target of one of the slots, about which it draws an
@@ -148,11 +145,9 @@ class Duplicates {
       const double way_m =
           track.velocity().cwiseAbs().maxCoeff() *
           std::min(std::max(end_s - track.time_s, track.time_s - begin_s), longest_s_);
-      const double apart_m = outline.apart_m(track.position()) - way_m;
+      const double apart_m = std::max(outline.apart_m(track.position()) - way_m, 0.0);
       const double variance_m2 = widest_m2(track);
-      if (!is_finite(track.position()) ||
-          (apart_m > 0.0 && apart_m * apart_m > reach_m2(widest + variance_m2)))
-        continue;
+      if (!(apart_m * apart_m <= reach_m2(widest + variance_m2))) continue;
       positions_.add(track.position(), variance_m2, slot);
       way_m_ = std::max(way_m_, way_m);
     }

@@ -27,6 +27,19 @@ concept HasModePositions = requires(const Estimator& estimator) {
   { estimator.evidence(Fix{}, Vec<double, 2>{}) } -> std::same_as<Evidence<double>>;
 };
 
+/// How far predictions of a position are from another one, north or east.
+struct GateSquare {
+  double farthest_m;
+  double variance_m2;  ///< the greatest along one of the axes
+
+  /// How far a fix with at most that variance may be and still be within the gate of that threshold
+  /// about one of them.
+  [[nodiscard]] double reach_m(double fix_m2, double threshold) const noexcept {
+    constexpr double kRounding = 1.0 + 1e-6;
+    return kRounding * (farthest_m + std::sqrt(threshold * (variance_m2 + fix_m2)));
+  }
+};
+
 /// Predictions of a position in one direction w, by which most fixes outside of their gate are
 /// found at less expense: with S = P + R, |w·ν|² > γ wᵀ S w means that νᵀ S⁻¹ ν > γ.
 struct GateStrip {
@@ -89,20 +102,17 @@ class ModePositions {
     for (std::size_t k = count_; k % kLanes != 0; ++k) put(k, row<double>(0), 0.0);
   }
 
-  /// How far from a position, north or east, a fix with at most that variance may be and still
-  /// within a gate of that threshold about one of the modes; infinite where modes are not shown.
-  [[nodiscard]] double reach_m(const Vec<double, 2>& position, double variance_m2,
-                               double threshold) const noexcept {
-    constexpr double kRounding = 1.0 + 1e-6;
-    if (evidence_ != nullptr) return std::numeric_limits<double>::infinity();
-    Lanes reach_m = 0.0;
+  /// All modes about a position; infinitely far where modes are not shown.
+  [[nodiscard]] GateSquare about(const Vec<double, 2>& position) const noexcept {
+    if (evidence_ != nullptr) return {std::numeric_limits<double>::infinity(), 0.0};
+    Lanes farthest_m = 0.0, variance_m2 = 0.0;
     for (std::size_t k = 0; k < count_; k += kLanes) {
       const Gaussian<2, Lanes> modes = row(k);
-      const Lanes widest_m2 = max(modes.covariance(0, 0), modes.covariance(1, 1));
-      const Lanes off_m = max(abs(modes.mean[0] - position[0]), abs(modes.mean[1] - position[1]));
-      reach_m = max(reach_m, off_m + sqrt(threshold * (widest_m2 + variance_m2)));
+      farthest_m =
+          max(farthest_m, max(abs(modes.mean[0] - position[0]), abs(modes.mean[1] - position[1])));
+      variance_m2 = max(variance_m2, max(modes.covariance(0, 0), modes.covariance(1, 1)));
     }
-    return kRounding * greatest_of_lanes(reach_m);
+    return {greatest_of_lanes(farthest_m), greatest_of_lanes(variance_m2)};
   }
 
   /// All modes in one direction from a position, about which they are; infinitely wide where modes

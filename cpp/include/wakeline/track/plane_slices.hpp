@@ -100,7 +100,6 @@ class PlaneSlices {
     const double widest_m = *std::max_element(reach_m.begin(), reach_m.end());
     std::array<std::size_t, 2 * std::size_t{kMostNear}> found;
     std::size_t count = 0;
-    double farthest_m = std::numeric_limits<double>::infinity();  // of the nearest so far
     const auto keep_nearest = [&] {
       const auto apart_m = [&](std::size_t k) {
         return std::max(std::abs(along_m_[k] - along_m), std::abs(across_m_[k] - across_m));
@@ -108,15 +107,17 @@ class PlaneSlices {
       std::nth_element(found.begin(), found.begin() + most, found.begin() + count,
                        [&](std::size_t a, std::size_t b) { return apart_m(a) < apart_m(b); });
       count = static_cast<std::size_t>(most);
-      farthest_m = apart_m(found[count]);
     };
     const std::size_t end = begin_[slice_of(along_m + widest_m) + 1];
-    for (std::size_t k = begin_[slice_of(along_m - widest_m)]; k < end; ++k) {
-      if (count == found.size()) keep_nearest();
-      const double within_m = std::min(reach_m[static_cast<std::size_t>(layer_[k])], farthest_m);
-      found[count] = k;
-      count += std::size_t{std::abs(along_m_[k] - along_m) <= within_m} &
-               std::size_t{std::abs(across_m_[k] - across_m) <= within_m};
+    for (std::size_t k = begin_[slice_of(along_m - widest_m)]; k < end;) {
+      if (count > std::size_t{kMostNear}) keep_nearest();
+      const std::size_t until = std::min(end, k + std::size_t{kMostNear});
+      for (; k < until; ++k) {
+        const double within_m = reach_m[static_cast<std::size_t>(layer_[k])];
+        found[count] = k;
+        count += std::size_t{std::abs(along_m_[k] - along_m) <= within_m} &
+                 std::size_t{std::abs(across_m_[k] - across_m) <= within_m};
+      }
     }
     if (count > static_cast<std::size_t>(most)) keep_nearest();
     for (std::size_t k = 0; k < count; ++k) function(name_[found[k]]);

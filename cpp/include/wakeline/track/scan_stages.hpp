@@ -112,6 +112,7 @@ class ScanStages {
 
  private:
   static constexpr double kClockPeriods = 10.0;  ///< in which a plot of another time is in error
+  static constexpr double kWidestMode = 9.0;     ///< covariance of one of an estimator, of mixtures
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 64;      ///< tracks that are stepped together
   static constexpr int kNoPlot = -1;
@@ -289,6 +290,16 @@ class ScanStages {
   /// Calls `f(plot)` for the plots in the gate of a track, those of outliers left out.
   template <class Function>
   void for_each_near(const Track& track, const Function& function) const noexcept {
+    for_each_in_strip(track, 1.0, 1.0, [&](int plot) {
+      if (is_near(track, plot)) function(plot);
+    });
+  }
+
+  /// Calls `f(plot)` for the plots that may be in the gate of a track, where the covariances of the
+  /// track and of plots are larger by these factors.
+  template <class Function>
+  void for_each_in_strip(const Track& track, double track_factor, double plot_factor,
+                         const Function& function) const noexcept {
     const ScanPlots& plots = state().plots;
     const double late_s = plots.greatest_lag_s(state().time_s);
     const auto position_before = [&](double before_s) {
@@ -308,15 +319,15 @@ class ScanStages {
     const double way_m = late_s * track.velocity().cwiseAbs().maxCoeff();
     const double way_m2 = late_s * std::abs(sight.dot(track.velocity()));
     const double threshold = picture_.gate.threshold();
-    const GateStrip strip{sight, now.mean, -way_m2, way_m2, along_m4};
-    plots.for_each_near(
-        now.mean, [&](double plot_m2) { return std::sqrt(threshold * (own_m2 + plot_m2)) + way_m; },
-        [&](int plot) {
-          const Gaussian<2>& position = plots[plot].position;
-          if (!strip.excludes(position.mean, position.covariance, threshold) &&
-              is_near(track, plot))
-            function(plot);
-        });
+    const GateStrip strip{sight, now.mean, -way_m2, way_m2, track_factor * along_m4};
+    const auto reach_m = [&](double plot_m2) {
+      return std::sqrt(threshold * (track_factor * own_m2 + plot_factor * plot_m2)) + way_m;
+    };
+    plots.for_each_near(now.mean, reach_m, [&](int plot) {
+      const Gaussian<2>& position = plots[plot].position;
+      if (!strip.excludes(position.mean, plot_factor * position.covariance, threshold))
+        function(plot);
+    });
   }
 
   /// Whether a plot is in the gate of a track without outliers.
@@ -428,7 +439,7 @@ class ScanStages {
     for (const int slot : waiting_) {
       const Track& track = picture_.tracks.at(slot);
       bool is_rival = false;
-      for_each_in_reach(track, [&](int plot) {
+      for_each_in_strip(track, kWidestMode, picture_.config.outlier_variance(), [&](int plot) {
         if (state().plots[plot].beam_rad > turn_ago_rad) state().plots.keep(plot);
         is_rival = is_rival ||
                    (is_candidate_[static_cast<std::size_t>(plot)] != 0 && is_near(track, plot));
@@ -437,21 +448,6 @@ class ScanStages {
     }
     for (int plot = 0; plot < state().plots.size(); ++plot)
       if (state().plots[plot].beam_rad > state().beam.angle_rad()) state().plots.keep(plot);
-  }
-
-  /// Calls `f(plot)` for the plots that may be in the gate of a track, about.
-  template <class Function>
-  void for_each_in_reach(const Track& track, const Function& function) const noexcept {
-    const Gaussian<2> now =
-        position_at_constant_velocity(track.kinematics, state().time_s - track.time_s);
-    const double own_m2 = now.covariance.trace(), threshold = picture_.gate.threshold();
-    const double outlier_variance = picture_.config.outlier_variance();
-    state().plots.for_each_near(
-        now.mean,
-        [&](double plot_m2) {
-          return std::sqrt(threshold * (own_m2 + outlier_variance * plot_m2));
-        },
-        function);
   }
 
   /// Predicts tracks, each to the time of its plot.

@@ -47,11 +47,12 @@ class TrackGate {
     const double apart_s = plots.greatest_lag_s(track.time_s);
     const double way_m = alignment.longest_way_m(apart_s);
     const double way_m2 = alignment.added_m2(apart_s).trace();
+    const GateSquare square = modes.about(track.position());
     const auto reach_m = [&](double plot_m2) {
       const double outlier_m2 = kElsewhere * outlier_variance_ * plot_m2 + way_m2;
       // Generous: the widest mode of an estimator may be some times wider than the mixture.
       const double generous_m = own_m + std::sqrt(threshold_ * outlier_m2);
-      return std::min(generous_m, modes.reach_m(track.position(), outlier_m2, threshold_)) + way_m;
+      return std::min(generous_m, square.reach_m(outlier_m2, threshold_)) + way_m;
     };
     // In range plots are precise, so that most others are outside of the gate in this direction.
     const GateStrip strip = modes.along(track.position() - plots.antenna(), track.position());
