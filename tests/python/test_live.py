@@ -343,6 +343,84 @@ def test_plots_in_an_exclusion_zone_start_no_track():
     assert session.status()["radars"]["A"]["excluded_plots"] > 40
 
 
+def test_a_track_that_enters_an_exclusion_zone_is_followed_and_one_that_enters_land_is_not():
+    everywhere = [[-1e5, -1e5], [-1e5, 1e5], [1e5, 1e5], [1e5, -1e5]]
+    hits = {}
+    for kind in ("exclusion", "land"):
+        session = joyride_session()
+        before = 0
+        for t, line in joyride_lines(120):
+            tracks = session.tracker.tracks()
+            if tracks and tracks[0].hits >= 10 and not before:
+                before = tracks[0].hits
+                zone = {"kind": kind, "outline_m": everywhere}
+                assert session.command({"command": "zone", "zone": zone})["ok"]
+            session.feed(t, "x", json.dumps(line).encode())
+        hits[kind] = [one.hits - before for one in session.tracker.tracks()]
+    assert hits["exclusion"][0] > 25
+    assert hits["land"] in ([], [0])
+
+
+def test_a_target_that_is_acquired_has_no_figures_before_it_has_plots():
+    session = joyride_session()
+    place = {"command": "acquire", "north_m": 900.0, "east_m": -200.0}
+    assert not session.command(place)["ok"]  # without a radar
+    for k in range(9):
+        t = 2.5 * k
+        plot = {"time_s": t, "range_m": math.hypot(900.0, 200.0), "bearing_rad": -0.2187}
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        own = {"own": {"north_m": 0.0, "east_m": 0.0}}
+        for line in (own, *([{"radar": "A"} | plot] if k > 4 else []), {"radar": "A"} | mark):
+            session.feed(t, "x", json.dumps(line).encode())
+        if k == 3:
+            assert session.command(place)["ok"]
+        shown = [(one["status"], "cpa" in one) for one in session.picture()["tracks"]]
+        assert shown == (
+            [] if k < 3 else [("tentative", False)] if k < 7 else [("confirmed", True)]
+        )
+
+
+def test_each_radar_says_why_it_is_not_used():
+    radars = [JOYRIDE | {"azimuth": "bow"}, {"name": "shore", "position_deg": [54.0, 10.0]}]
+    session = wl.live.Session({"radar": radars, "own": {"heading_age_s": 3.0}})
+    for k in range(40):
+        t, seen = 0.5 * k, set()
+        own = {"latitude_deg": 54.01, "longitude_deg": 10.0}
+        lines = [{"own": own | ({"heading_rad": 1.0} if t < 5.0 else {})}]
+        for name in ("A", "shore"):
+            mark = {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}
+            lines.append({"radar": name, "sector": mark})
+        for line in lines:
+            session.feed(t, "x", json.dumps(line).encode())
+            seen.add(session.status()["frozen"].partition(":")[0])
+        if t == 8.0:
+            continue  # too old from this sector on
+        assert seen == ({""} if t < 8.0 else {"radar A not used"}), t
+        radar = session.status()["radars"]
+        assert (radar["A"]["unused_why"] == "") == (t < 8.0)
+        assert radar["shore"]["unused_why"] == ""
+
+
+def test_own_ship_that_is_lost_is_where_it_was_with_its_heading():
+    session = wl.live.Session({"radar": [JOYRIDE]})
+    for k in range(40):
+        t = 1.0 * k
+        own = {"heading_rad": 0.1 * k}
+        if t < 10.0:
+            own |= {"north_m": 5.0 * k, "east_m": 0.0, "speed_mps": 5.0, "course_rad": 0.0}
+        session.feed(t, "own", json.dumps({"own": own}).encode())
+        session.feed(
+            t,
+            "radar",
+            json.dumps({"sector": {"from_rad": 0.0, "to_rad": 6.0, "time_s": t}}).encode(),
+        )
+    picture = session.picture()
+    own = picture["own"]
+    assert (own["lost"], own["north_m"], own["vnorth_mps"]) == (True, 45.0, None)
+    assert own["heading_rad"] == pytest.approx(3.9)
+    assert not picture["ashore"]
+
+
 def test_zones_of_the_settings_are_where_their_corners_are_and_survive_a_restart():
     """Also where the origin is the first position; those that an operator changed, too."""
     corners = [[54.01, 9.99], [54.01, 10.01], [54.02, 10.01], [54.02, 9.99]]
@@ -438,6 +516,11 @@ def test_operators_name_drop_and_acquire():
     answer = session.command({"command": "rename", "track_id": track.track_id, "name": "boat"})
     assert answer == {"ok": True}
     assert session.tracker.tracks()[0].name == "boat"
+    for name, kept in (("  ", ""), (" tug ", "tug"), ("Æ" * 31, "Æ" * 15)):
+        long = {"command": "rename", "track_id": track.track_id, "name": name}
+        assert session.command(long) == {"ok": True, "name": kept}
+        assert session.tracker.tracks()[0].name == kept
+    session.command({"command": "rename", "track_id": track.track_id, "name": "boat"})
     assert session.command({"command": "drop", "track_id": track.track_id})["ok"]
     assert session.tracker.tracks() == []
     answer = session.command({"command": "acquire", "north_m": 100.0, "east_m": 2.0})

@@ -195,11 +195,13 @@ def test_deleting_a_zone_ends_its_alarms():
 
 
 def test_exclusion_and_land_keep_plots_out_and_raise_no_alarm():
-    zones = Zones(
-        [Zone(kind="land", outline_m=SQUARE), Zone(outline_m=[[200, 0], [300, 0], [300, 9]])]
-    )
-    assert zones.keeps_out([[50, 50], [150, 50], [290, 2]]).tolist() == [True, False, False]
-    assert zones.update(0.0, [1], [[50.0, 50.0]], [1.0]) == []
+    guard = Zone(outline_m=[[200, 0], [300, 0], [300, 9]])
+    plots_m = np.array([[50.0, 50.0], [150.0, 50.0], [290.0, 2.0]])
+    for kind, of_track in (("land", False), ("exclusion", False), ("exclusion", True)):
+        zones = Zones([Zone(kind=kind, outline_m=SQUARE), guard])
+        kept = zones.kept(plots_m, lambda which: np.full(len(which), of_track))  # noqa: B023
+        assert kept.tolist() == [of_track, True, True]
+        assert zones.update(0.0, [1], [[50.0, 50.0]], [1.0]) == []
 
 
 @pytest.mark.parametrize(
@@ -279,6 +281,33 @@ def test_with_own_ship_the_alarm_is_its_own_and_pairs_are_silent_unless_wanted()
         assert sorted(alarm.tracks for alarm in alarms.active) == expected
         assert alarms.active[0].priority == "alarm"
         assert {(e["first"], e["second"]) for e in alarms.encounters()} == {(0, 3), (1, 2)}
+
+
+def test_own_ship_whose_position_is_lost_is_no_shore_station():
+    own = [-3000.0, 5.0, 0.0, 0.0]
+    alarms, there = Alarms(), meeting(0.0)
+    for column in ("track_id", "mean", "covariance", "status", "name"):  # one on a reverse course
+        setattr(there, column, getattr(there, column)[1:])
+    alarms.update(0.0, there, own=own, is_ashore=False)
+    (alarm,) = alarms.active
+    assert alarm.tracks == (0, 2)
+    for time_s in (1.0, 5.0):
+        assert alarms.update(time_s, meeting(time_s), is_ashore=False) == []
+    assert alarms.active == [alarm]
+    events = []
+    for time_s in range(900, 1000, 5):
+        own[0] = -3000.0 + own[1] * time_s
+        events += alarms.update(float(time_s), meeting(time_s), own=own, is_ashore=False)
+    assert ended(events, "cpa") == [alarm]
+
+
+def test_pairs_that_began_ashore_end_when_there_is_own_ship():
+    alarms = Alarms()
+    alarms.update(0.0, meeting(0.0))
+    (alarm,) = alarms.active
+    far = [9e4, 0.0, 9e4, 0.0]
+    assert ended(alarms.update(1.0, meeting(1.0), own=far), "cpa") == [alarm]
+    assert alarms.active == []
 
 
 def test_new_limits_end_the_encounters_of_the_old_ones():

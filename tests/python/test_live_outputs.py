@@ -104,7 +104,7 @@ def test_a_lost_target_is_reported_once():
     assert len(lost) == 3
 
 
-def test_targets_without_a_number_are_counted():
+def test_near_targets_take_the_numbers_of_far_ones_and_the_rest_are_counted():
     """TTM has a hundred numbers, tracks of ASTERIX have more."""
     session = wl.live.Session(
         {"radar": [RADAR | {"period_s": 2.5}], "own": {"place_deg": ORIGIN_DEG}}
@@ -112,17 +112,27 @@ def test_targets_without_a_number_are_counted():
     outputs = [
         session.add_output(f"udp://127.0.0.1:1?name={f}&format={f}") for f in ("ttm", "cat062")
     ]
-    for turn in range(6):
+    far = [(5000.0 + 100.0 * (k % 7), 0.06 * k) for k in range(100)]
+    near = [(1000.0 + 50.0 * k, 0.25 * k) for k in range(25)]
+    lost = []
+    outputs[0].send = lambda octets: lost.append(octets) if b",L," in octets else None
+    for turn in range(50):
         time_s = 2.5 * turn
-        plots = [
-            {"time_s": time_s, "range_m": 1000.0 + 100.0 * (k % 7), "bearing_rad": 0.05 * k}
-            for k in range(125)
+        lines = [
+            {"time_s": time_s, "range_m": range_m, "bearing_rad": bearing_rad}
+            for range_m, bearing_rad in far + near * (turn >= 10)
         ]
-        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": time_s}}
-        for line in (*plots, mark):
+        lines.append({"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": time_s}})
+        for line in lines:
             session.feed(time_s, "radar", json.dumps(line).encode())
-    assert len(session.shown.track_id) == 125
-    assert [output.status()["waiting"] for output in outputs] == [25, 0]
+        if turn == 9:
+            assert [output.status()["waiting"] for output in outputs] == [0, 0]
+    shown = session.shown
+    assert len(shown) == 125
+    assert [output.status()["waiting"] for output in outputs] == [30, 0]
+    is_near = np.hypot(shown.mean[:, 0], shown.mean[:, 2]) < 3000.0
+    assert np.isin(shown.track_id[is_near], list(outputs[0]._feed.numbers)).all()
+    assert len(lost) == 30
 
 
 def test_pynmea2_reads_every_sentence():

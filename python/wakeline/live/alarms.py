@@ -277,6 +277,7 @@ class Alarms:
         *,
         own: Sequence[float] | None = None,
         own_covariance: Any = None,
+        is_ashore: bool | None = None,
         heading_rad: float = math.nan,
         events: Iterable[Any] = (),
         sensors: Iterable[Sensor | tuple] = (),
@@ -295,6 +296,9 @@ class Alarms:
             Own ship. A shore station has none; its sectors then need none either.
         own_covariance : (4, 4) array, optional
             Default: the velocity error of the limits.
+        is_ashore : bool, optional
+            Whether there is no own ship; default: none is given. Of one whose position is lost the
+            close passings stay as they were.
         heading_rad : float, optional
         events : iterable of wakeline.Event
             Of the tracker; a loss has its reason there.
@@ -330,7 +334,11 @@ class Alarms:
         self._pass_occupants()
         if not time_s - self._paired_s < _PAIR_S * len(track_id) ** 2:
             self._paired_s = time_s
-            self._pass_encounters(track_id, mean, covariance, own, own_covariance)
+            pairs = own is None if is_ashore is None else is_ashore
+            if self.config.pairs is not None:
+                pairs = self.config.pairs
+            if own is not None or pairs:
+                self._pass_encounters(track_id, mean, covariance, own, own_covariance, pairs)
         self._pass_sensors([Sensor(*one) for one in sensors])
         self._pass_disagreements([Disagreement(*one) for one in disagreements])
         return self.changes()
@@ -402,6 +410,7 @@ class Alarms:
         covariance: np.ndarray,
         own: Sequence[float] | None,
         own_covariance: Any,
+        pairs: bool,
     ) -> None:
         if own is not None and np.isfinite(own).all():
             if own_covariance is None:
@@ -417,12 +426,13 @@ class Alarms:
             if number in self._encounters:
                 self._end(self._encounters.pop(number), "danger over")
         self._dangers = self._watch.encounters
-        pairs = own is None if self.config.pairs is None else self.config.pairs
         for number, time_s, first, second, cpa_m, tcpa_s, probability in _rows(
             self._dangers,
             *("encounter_id", "time_s", "first", "second", "cpa_m", "tcpa_s", "probability"),
         ):
             if first != OWN_SHIP and not pairs:
+                if number in self._encounters:
+                    self._end(self._encounters.pop(number), "own ship is known")
                 continue
             values = {"cpa_m": cpa_m, "tcpa_s": tcpa_s, "probability": probability}
             alarm = self._encounters.get(number)
@@ -443,10 +453,7 @@ class Alarms:
             if age_s > limit_s or math.isnan(age_s):
                 held.good_since_s = math.nan
                 if held.alarm is None:
-                    text = (
-                        f"{name}: no data for {age_s:.0f} s" if age_s < 1e6 else f"{name}: no data"
-                    )
-                    held.alarm = self._begin("sensor lost", text, source=name)
+                    held.alarm = self._begin("sensor lost", f"{name}: no data", source=name)
                 continue
             if math.isnan(held.good_since_s):
                 held.good_since_s = self.time_s
@@ -469,7 +476,7 @@ class Alarms:
             if held.alarm is None and self.time_s - held.since_s >= self.config.disagree_s:
                 held.alarm = self._begin(
                     "ais disagrees",
-                    text or f"AIS {identity} disagrees",
+                    f"{self._called(track_id)}: {text or f'AIS {identity} disagrees'}",
                     (track_id,),
                     source=identity,
                 )
@@ -558,6 +565,11 @@ class Alarms:
         return [alarm.as_dict(self.time_s) for alarm in self._active.values()] + [
             alarm.as_dict(self.time_s) for alarm in list(self._ended)[::-1][:ended]
         ]
+
+    @property
+    def in_danger(self) -> set[int]:
+        """The tracks of all alarms of close passings."""
+        return {track for alarm in self._encounters.values() for track in alarm.tracks}
 
     def encounters(self) -> list[dict[str, Any]]:
         """Every close passing that is a danger now, for JSON: values and the two closest places."""

@@ -7,6 +7,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from wakeline import wire
 
 from .config import OutputConfig
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from .session import Session
 
 
+_NUMBERS = 100  # of targets in TTM
+_RESTING = 5  # of these, where there are more tracks, for those that come
+_KEEPS = 0.8  # so much nearer is a target that takes the place of another
 _LEAST_INTERVAL_S = 3.0  # OpenCPN draws no trail of a target that comes more often than 2 s
 
 
@@ -31,6 +36,8 @@ class Output:
         For the receiver until now.
     sent, dropped : int
         Messages that were sent, and that the receiver did not take in time.
+    waiting : int
+        Tracks shown for which the receiver has no number.
     connection : str
     failing : bool
         Whether `connection` says why nothing can be sent.
@@ -39,7 +46,7 @@ class Output:
     def __init__(self, config: OutputConfig) -> None:
         self.config = config
         self.send: Callable[[bytes], None] = _nowhere
-        self.messages = self.octets = self.sent = self.dropped = 0
+        self.messages = self.octets = self.sent = self.dropped = self.waiting = 0
         self.connection = ""
         self.failing = False
 
@@ -48,11 +55,6 @@ class Output:
 
     def event(self, session: Session, event: dict[str, Any]) -> None:
         """Send an event."""
-
-    @property
-    def waiting(self) -> int:
-        """Tracks shown for which its receiver has no free number."""
-        return 0
 
     def save(self) -> bytes:
         """The numbers of its targets, empty if it has none."""
@@ -107,19 +109,21 @@ class WireOutput(Output, abc.ABC):
             return
         if self._feed is None:
             self._feed = self._make(session)
-        shown = session.shown
+        shown, chosen = session.shown, self._chosen(session)
         columns = {
-            "track_id": shown.track_id,
-            "estimate_time_s": shown.time_s,
-            "mean": shown.mean,
-            "name": shown.names,
+            "track_id": shown.track_id[chosen],
+            "estimate_time_s": shown.time_s[chosen],
+            "mean": shown.mean[chosen],
+            "name": [shown.names[k] for k in chosen.tolist()],
         }
-        for octets in self._feed.update(session.time_s, **columns, **self._more(session)):
+        more = self._more(session, chosen)
+        for octets in self._feed.update(session.time_s, **columns, **more):
             self._send(octets)
+        self.waiting = len(shown) - len(chosen) + self._feed.waiting
 
-    @property
-    def waiting(self) -> int:
-        return 0 if self._feed is None else self._feed.waiting
+    def _chosen(self, session: Session) -> np.ndarray:
+        """The rows of the tracks that are sent."""
+        return np.arange(len(session.shown))
 
     def save(self) -> bytes:
         return b"" if self._feed is None else self._feed.save()
@@ -133,8 +137,8 @@ class WireOutput(Output, abc.ABC):
         """The feed."""
 
     @abc.abstractmethod
-    def _more(self, session: Session) -> dict[str, Any]:
-        """What else the feed is given."""
+    def _more(self, session: Session, chosen: np.ndarray) -> dict[str, Any]:
+        """What else the feed is given of these rows."""
 
 
 class TtmOutput(WireOutput):
@@ -145,7 +149,18 @@ class TtmOutput(WireOutput):
         interval_s = max(_LEAST_INTERVAL_S, *periods)
         return wire.TtmFeed(session.plane, interval_s=interval_s, tll=self.config.format == "tll")
 
-    def _more(self, session: Session) -> dict[str, Any]:
+    def _chosen(self, session: Session) -> np.ndarray:
+        """Of more than there are numbers those in danger, then the nearest."""
+        shown = session.shown
+        if len(shown) <= _NUMBERS:
+            return super()._chosen(session)
+        own = session.fix_of_receivers()
+        rank_m = np.hypot(shown.mean[:, 0] - own.north_m, shown.mean[:, 2] - own.east_m)
+        rank_m[np.isin(shown.track_id, list(self._feed.numbers))] *= _KEEPS
+        rank_m[np.isin(shown.track_id, list(session.watchers[0].alarms.in_danger))] = 0.0
+        return np.argsort(rank_m, kind="stable")[: _NUMBERS - _RESTING]
+
+    def _more(self, session: Session, chosen: np.ndarray) -> dict[str, Any]:
         heading = session.own.heading_at(session.time_s)
         return {
             "own": session.fix_of_receivers(),
@@ -161,8 +176,9 @@ class AsterixOutput(WireOutput):
             return wire.Cat010Feed(session.plane)
         return wire.Cat062Feed(session.plane, several_radars=len(session.radars) > 1)
 
-    def _more(self, session: Session) -> dict[str, Any]:
-        return {"covariance": session.shown.covariance, "coasting": session.shown.coasting}
+    def _more(self, session: Session, chosen: np.ndarray) -> dict[str, Any]:
+        shown = session.shown
+        return {"covariance": shown.covariance[chosen], "coasting": shown.coasting[chosen]}
 
 
 _KINDS = {

@@ -317,6 +317,24 @@ class OwnShipSources:
             0.2 if velocity else 0.0,
         )
 
+    def last(self, time_s: float) -> Pose | None:
+        """Own ship where it was last, with its heading at a time; None if it never was anywhere."""
+        source = self.position.used
+        if source is None:
+            return None
+        heading_rad, heading_std_rad = self.heading_at(time_s) or (math.nan, 0.0)
+        unknown = math.nan
+        return Pose(
+            time_s,
+            *source.value[-1][:2],
+            heading_rad,
+            unknown,
+            unknown,
+            unknown,
+            heading_std_rad,
+            0.0,
+        )
+
     def heading_at(self, time_s: float) -> tuple[float, float] | None:
         """Heading and its standard deviation; None if unknown."""
         if self._fixed is not None:

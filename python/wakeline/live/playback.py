@@ -10,6 +10,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Protocol
@@ -18,7 +19,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._brief import quoted
-from wakeline.recording import Episode, OwnShipMotion, Tracks
+from wakeline.recording import Episode, OwnShipMotion, Scan, Tracks
 from wakeline.tracking import MODE_NAMES, Settings, median_step_s
 
 from .alarms import AlarmConfig, AlarmLog
@@ -27,7 +28,7 @@ from .record import read_session
 from .service import feed_record
 from .session import Session
 from .watch import AlarmBoard
-from .zones import Zone, Zones
+from .zones import Zone, Zones, are_of_tracks
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _TICK_S = 0.1
@@ -44,13 +45,13 @@ class Source(Protocol):
     Attributes
     ----------
     start_s, end_s : float
-    keeps_out : callable
-        Whether places (n, 2) are where no target is acquired.
+    kept : callable
+        Which plots are used where there are zones: :meth:`Zones.kept`.
     """
 
     start_s: float
     end_s: float
-    keeps_out: Callable[[np.ndarray], np.ndarray]
+    kept: Callable[[np.ndarray, Callable[[np.ndarray], np.ndarray]], np.ndarray]
 
     def steps(self, after_s: float, until_s: float) -> list[float]:
         """Times in (after_s, until_s] at which something is new."""
@@ -304,7 +305,7 @@ class Playback(Player):
         self._snapshots: list[tuple[float, bytes]] = []
         self._spacing_s = _SNAPSHOT_S
         self._step_s = -math.inf
-        source.keeps_out = lambda places: self._board.keeps_out(places)
+        source.kept = lambda *plots: self._board.alarms.zones.kept(*plots)
         self._keep()
         self._advance(source.start_s)
 
@@ -501,7 +502,7 @@ class RecordedPlots:
                     self._tracker.latest_time_s, range_m=[], bearing_rad=[]
                 )
                 events += silent.events
-            kept = ~self.keeps_out(scan.position_m)
+            kept = self.kept(scan.position_m, partial(self._are_tracked, scan))
             events += self._tracker.process(
                 end_s,
                 range_m=scan.range_m[kept],
@@ -512,6 +513,11 @@ class RecordedPlots:
             ).events
             self._next += 1
         return events
+
+    def _are_tracked(self, scan: Scan, which: np.ndarray) -> np.ndarray:
+        radar, table = self._tracker.radar, self._tracker.tracks(time_s=self._end_s[self._next])
+        std_m = np.hypot(radar.range_std_m, radar.bearing_std_rad * scan.range_m[which])
+        return are_of_tracks(scan.position_m[which], std_m, table.mean, table.covariance)
 
     def tracks(self) -> Any:
         """At the last scan, those that are being acquired too."""

@@ -45,6 +45,8 @@ class RadarFeed:
     name : str
     period_s : float
         Of the antenna, as configured; measured from its marks.
+    unused_why : str
+        Why its last sector was not used; empty if it was.
     """
 
     name: str
@@ -54,6 +56,7 @@ class RadarFeed:
     sectors: int = 0
     unused: int = 0
     excluded: int = 0
+    unused_why: str = ""
     last_s: float = -math.inf
     _waiting: list[PlotRow] = field(default_factory=list)
     _marks: bool = False

@@ -157,6 +157,7 @@ class Service:
             if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
                 for record in read_session(path, last_segment=True):
                     self._continue(path, record)
+                self.session.note = ""
             time_s = max(at_microsecond(now_s()), self.session.time_s)
             try:
                 self._recorder = self._begun_recorder(time_s)
@@ -177,7 +178,10 @@ class Service:
         try:
             if record.input and inputs and record.input.partition(" from ")[0] not in inputs:
                 raise ValueError(f"no input named {record.input}")
-            feed_record(self.session, record)
+            with self.session.lock:
+                feed_record(self.session, record)
+            behind_s = now_s() - self.session.time_s
+            self.session.note = f"The record is read again: the picture is {behind_s:.0f} s old"
         except ValueError as error:
             raise RecordingError(
                 path,

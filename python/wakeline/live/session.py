@@ -29,7 +29,7 @@ from .radar_feed import PlotRow, RadarFeed, Sector, columns
 from .shown import Shown
 from .sources import Receivers, Source
 from .watch import AlarmWatcher
-from .zones import Zone, placed
+from .zones import Zone, are_of_tracks, placed
 
 Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
 """Called with radar, azimuth_rad (n,), heading_rad (NaN: azimuths from north), range_m of the end
@@ -46,6 +46,8 @@ _DISAGREE = ("identity_disagrees", "identity_jumps", "identity_shared")
 _DISAGREE_S = 60.0  # a disagreement that is not stated again is over
 _HISTORY = 60  # past positions of a track in the picture
 _HISTORY_S = 5.0
+_HITS_OF_ACQUIRED = 3  # more plots of a target that the operator acquires until it has figures
+_NAME_OCTETS = 31
 _MOST_EVENTS = 500
 
 
@@ -95,6 +97,8 @@ class Session:
         Called with every event, track update and alarm: kind and values.
     time_s : float
         Of the last octets; -inf before the first.
+    note : str
+        Why the picture is not of now; empty if it is.
     journal : callable, optional
         Called with an operator's command before it is done; returns the time of it.
     lock : RLock
@@ -116,6 +120,7 @@ class Session:
         self._passed_s = -math.inf
         self.journal: Callable[[Mapping[str, Any]], float] | None = None
         self.lost = 0
+        self.note = ""
         self.record_problem = ""
         bow = {one.name for one in self.config.radars if one.azimuth == "bow"}
         if self.config.radars[0].name in bow:
@@ -138,7 +143,6 @@ class Session:
         self.ais = AisPicture()
         self.plane: wl.LocalPlane | None = None
         self.shown = Shown()
-        self.frozen = ""
         self.sweeps: list[Sweeps] = []
         self.watchers: list[Watcher] = [
             AlarmWatcher(
@@ -155,6 +159,7 @@ class Session:
         self.news: list[dict[str, Any]] = []
         self._disagree: dict[tuple[int, str], float] = {}
         self._edge_rad: dict[str, float] = {}
+        self._acquired: dict[int, int] = {}  # by the operator: plots at which it has figures
         if self.config.session.origin_deg:
             self._set_origin(*self.config.session.origin_deg)
         for one in self.config.radars:
@@ -397,11 +402,11 @@ class Session:
         from_bow = radar.azimuth == "bow"
         antenna = self._antenna(radar, sector.time_s, needs_heading=from_bow)
         if isinstance(antenna, Missing):
-            self.frozen = f"tracks frozen: {antenna.reason}"
+            feed.unused_why = antenna.reason
             feed.unused += len(sector.plots)
             self._edge_rad.pop(feed.name, None)
             return
-        self.frozen = ""
+        feed.unused_why = ""
         end, own = antenna
         plot_time_s, range_m, bearing_rad, covariance = columns(sector.plots)
         place_m = _moved(own, plot_time_s - sector.time_s)
@@ -409,7 +414,7 @@ class Session:
             range_m, bearing_rad = self._seen_from(
                 place_m, radar, plot_time_s, range_m, bearing_rad, from_bow
             )
-        kept = self._outside(place_m, range_m, bearing_rad)
+        kept = self._outside(feed, sector.time_s, place_m, range_m, bearing_rad)
         if not kept.all():
             feed.excluded += int(np.sum(~kept))
             plot_time_s, range_m, bearing_rad = (
@@ -447,18 +452,23 @@ class Session:
 
     def _outside(
         self,
+        feed: RadarFeed,
+        time_s: float,
         place_m: np.ndarray,
         range_m: np.ndarray,
         bearing_rad: np.ndarray,
     ) -> np.ndarray:
-        """Whether plots (n,) from places (n, 2) are outside exclusion zones and land."""
-        kept = np.ones(len(range_m), dtype=bool)
-        for watcher in self.watchers:
-            keeps_out = getattr(watcher, "keeps_out", None)
-            if keeps_out is not None and len(range_m):
-                direction = np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)])
-                kept &= ~keeps_out(place_m + range_m[:, np.newaxis] * direction)
-        return kept
+        """Which plots (n,) from places (n, 2) are used: :meth:`Zones.kept`."""
+        direction = np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)])
+        plots_m = place_m + range_m[:, np.newaxis] * direction
+        radar, shown = self.tracker.radars[list(self.feeds).index(feed.name)], self.shown
+
+        def is_tracked(which: np.ndarray) -> np.ndarray:
+            std_m = np.hypot(radar.range_std_m, radar.bearing_std_rad * range_m[which])
+            ahead_s = time_s - shown.time_s
+            return are_of_tracks(plots_m[which], std_m, shown.mean, shown.covariance, ahead_s)
+
+        return self.watchers[0].alarms.zones.kept(plots_m, is_tracked)
 
     def _antenna(
         self, radar: RadarConfig, time_s: float, *, needs_heading: bool
@@ -558,6 +568,13 @@ class Session:
                 self._disagree.pop(key, None)
             self._event(event)
 
+    def called(self, name: str, identity: str) -> str:
+        """What a target is called: by its name, else by that of the vessel that reports."""
+        if name or not identity.isdecimal():
+            return name
+        vessel = self.ais.vessels.get(int(identity))
+        return vessel.name if vessel is not None else ""
+
     def disagreements(self) -> list[tuple[int, str, str]]:
         """Tracks whose reports are not where their echoes are: number, identity, and what is so."""
         now_s = self.tracker.time_s
@@ -633,8 +650,8 @@ class Session:
     def picture(self) -> dict[str, Any]:
         """All that a screen shows, ready for JSON: SI units, radians, positions also in degrees.
 
-        Its keys are ``version``, ``time_s``, ``origin_deg``, ``own``, ``radars``, ``tracks``,
-        ``ais``, ``alarms``, ``zones`` and ``status``.
+        Its keys are ``version``, ``time_s``, ``origin_deg``, ``own``, ``ashore``, ``radars``,
+        ``tracks``, ``ais``, ``alarms``, ``zones`` and ``status``.
         """
         time_s = self.time_s if math.isfinite(self.time_s) else 0.0
         lines = self.lines(self.tracker.table(self._shown_s(time_s)))
@@ -645,6 +662,8 @@ class Session:
             "time_s": time_s,
             "origin_deg": self.origin_deg,
             "own": self._own_picture(time_s),
+            "ashore": self.is_ashore,
+            "note": self.note,
             "radars": [self._radar_picture(name, time_s) for name in self.radars],
             "ais": [
                 self._vessel_picture(vessel, time_s) | {"track_id": track_of.get(str(vessel.mmsi))}
@@ -656,7 +675,12 @@ class Session:
         }
         for watcher in self.watchers:
             picture |= watcher.picture(self)
+        hits_of = {one["track_id"]: one["hits"] for one in tracks}
+        self._acquired = {k: v for k, v in self._acquired.items() if hits_of.get(k, v) < v}
         for values in tracks:
+            if values["track_id"] in self._acquired:
+                values["status"] = "tentative"
+                values.pop("cpa", None)
             values["history"] = list(self._history.get(values["track_id"], ()))
         return json_lines.finite_only(picture) | {"tracks": tracks}
 
@@ -664,11 +688,24 @@ class Session:
         """The time of the tracks in the picture; None before the first sector."""
         return max(time_s, self.tracker.time_s) if self.tracker.time_s else None
 
+    @property
+    def is_ashore(self) -> bool:
+        """Whether there is no own ship: radars have a place for good, nothing else a position."""
+        aboard = any(
+            self.feeds[name].last_s > -math.inf and not radar.position_deg
+            for name, radar in self.radars.items()
+        )
+        return not aboard and self.own.last(self.time_s) is None
+
     def _own_picture(self, time_s: float) -> dict[str, Any] | None:
+        """Own ship as it is, or, `lost`, where it was last."""
         pose = self.own.at(time_s)
-        if isinstance(pose, Missing):
+        is_lost = isinstance(pose, Missing)
+        if is_lost:
+            pose = self.own.last(time_s)
+        if pose is None:
             return None
-        values = pose._asdict()
+        values = pose._asdict() | {"lost": is_lost}
         place = self.to_degrees(pose.north_m, pose.east_m)
         if place is not None:
             values["latitude_deg"], values["longitude_deg"] = place
@@ -697,6 +734,15 @@ class Session:
             )
         return values
 
+    @property
+    def frozen(self) -> str:
+        """Why tracks are not updated, or which radars are not used; empty if all are."""
+        heard = [feed for feed in self.feeds.values() if feed.last_s > -math.inf]
+        unused = [feed for feed in heard if feed.unused_why]
+        if unused and len(unused) == len(heard):
+            return f"tracks frozen: {unused[0].unused_why}"
+        return "; ".join(f"radar {feed.name} not used: {feed.unused_why}" for feed in unused)
+
     def _file_problems(self) -> list[str]:
         """Why the session file or the table of alarms is not written."""
         logs = [getattr(one, "log", None) for one in self.watchers]
@@ -722,6 +768,7 @@ class Session:
                         "sectors": feed.sectors,
                         "unused_plots": feed.unused,
                         "excluded_plots": feed.excluded,
+                        "unused_why": feed.unused_why,
                         "age_s": time_s - feed.last_s,
                         "clock_offset_s": self._clock_offset_s(feed),
                     }
@@ -826,8 +873,11 @@ class Session:
                 )
                 return _answer(found, "no track has that number")
             if name == "rename":
-                found = self.tracker.rename(int(command["track_id"]), str(command["name"]))
-                return _answer(found, "no track has that number")
+                given = str(command["name"])
+                name = _kept_name(given)
+                found = self.tracker.rename(int(command["track_id"]), name)
+                kept = {"name": name} if name != given else {}
+                return _answer(found, "no track has that number") | kept
             return _answer(False, f"unknown command {str(name)[:40]!r}")
         except KeyError as error:
             return _answer(False, f"wanted {error.args[0]}")
@@ -842,8 +892,13 @@ class Session:
         else:
             place = float(command["north_m"]), float(command["east_m"])
         std_m = float(command.get("position_std_m", 50.0))
-        time_s = self.tracker.time_s or (self.time_s if math.isfinite(self.time_s) else 0.0)
-        track_id = self.tracker.designate(time_s, *place, std_m)
+        if not self.tracker.time_s:
+            return _answer(False, "no radar has given data yet")
+        known = self.tracker.table().track_id.tolist()
+        track_id = self.tracker.designate(self.tracker.time_s, *place, std_m)
+        if track_id not in known:
+            hits_of = {one.track_id: one.hits for one in self.tracker.tracks()}
+            self._acquired[track_id] = hits_of.get(track_id, 0) + _HITS_OF_ACQUIRED
         return _answer(track_id > 0, "there is no room for another track") | {"track_id": track_id}
 
     # ------------------------------------------------------------------ places
@@ -908,6 +963,11 @@ def _config(config: LiveConfig | Mapping[str, Any] | str | Path | None) -> LiveC
     if isinstance(config, Mapping):
         return config_of(config)
     return read_config(config)
+
+
+def _kept_name(name: str) -> str:
+    """What a tracker keeps of the name of a track."""
+    return name.strip().encode()[:_NAME_OCTETS].decode(errors="ignore").strip()
 
 
 def _velocity(values: Mapping[str, float]) -> tuple[float, float]:

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 import wakeline as wl
+from wakeline._checks import positive
 
 from .alarms import AlarmConfig, AlarmEvent, AlarmLog, Alarms, Disagreement, Sensor
 from .zones import Zone, Zones, placed
@@ -56,10 +56,6 @@ class AlarmBoard:
             self.log.write(events)
         return events
 
-    def keeps_out(self, place_m: ArrayLike) -> NDArray[np.bool_]:
-        """Whether places (n, 2) are in an exclusion zone or on land."""
-        return self.alarms.zones.keeps_out(place_m)
-
     def obey(self, command: Mapping[str, Any]) -> dict[str, Any] | None:
         """Do what an operator asks for; None if it concerns neither zones nor alarms.
 
@@ -78,6 +74,7 @@ class AlarmBoard:
             return _answer(alarms.delete_zone(command["zone_id"]), "no zone has that number")
         if name == "limits":
             changed = {key: float(command[key]) for key in _LIMITS if key in command}
+            positive(**changed)  # a limit of 0 would switch the alarms off
             now = alarms.limits.as_dict() | changed
             now["clear_probability"] = min(now["clear_probability"], now["alarm_probability"])
             alarms.limits = wl.DangerLimits(**now)
@@ -105,10 +102,19 @@ class AlarmWatcher(AlarmBoard):
         """Changes of alarms at a new picture, as events of the session."""
         own = session.own.at(time_s)
         known = hasattr(own, "north_m") and np.isfinite([own.vnorth_mps, own.veast_mps]).all()
+        table = session.tracker.table()
+        names = map(session.called, table.name, table.identity)
         events = self.take(
             time_s,
-            session.tracker.table(),
+            SimpleNamespace(
+                track_id=table.track_id,
+                mean=table.mean,
+                covariance=table.covariance,
+                status=table.status,
+                name=list(names),
+            ),
             own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
+            is_ashore=session.is_ashore,
             heading_rad=own.heading_rad if hasattr(own, "heading_rad") else float("nan"),
             events=[SimpleNamespace(**one) for one in session.news],
             sensors=_sensors(session, time_s),

@@ -21,6 +21,7 @@ MOST_NAME = 40
 _FAR_M = 1e6
 _TURN_RAD = 2.0 * np.pi
 _LEAVING_STDS = 2.0
+_OF_TRACK = 4.0  # standard deviations
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +34,8 @@ class Zone:
         Positive once it is in :class:`Zones`; never used again.
     name : str
     kind : str
-        "guard" (alarms), "exclusion" (plots inside start no track) or "land" (the same; drawn as
-        land).
+        "guard" (alarms), "exclusion" (plots inside start no track, and update those that have come
+        in) or "land" (plots inside are not used).
     outline_m : ndarray (n, 2) or None
         Corners [north, east] of a polygon, 3 or more. None for a sector.
     near_m, far_m : float
@@ -302,14 +303,28 @@ class Zones:
         self._watched = {zone.zone_id: _Watched(zone) for zone in zones}
         self._next_id = int(state["next_id"])
 
-    def keeps_out(self, place_m: ArrayLike) -> NDArray[np.bool_]:
-        """Whether places (n, 2) are in an exclusion zone or on land."""
-        place_m = np.asarray(place_m, dtype=float).reshape(-1, 2)
-        out = np.zeros(len(place_m), dtype=bool)
+    def kept(
+        self,
+        place_m: NDArray[np.float64],
+        is_tracked: Callable[[NDArray[np.intp]], NDArray[np.bool_]],
+    ) -> NDArray[np.bool_]:
+        """Which plots at places (n, 2) are used: (n,).
+
+        Not those on land, and of those in exclusion zones what is of a track: `is_tracked` says so
+        of some, by their indices.
+        """
+        kept = ~self._are_in("land", place_m)
+        excluded = np.flatnonzero(kept & self._are_in("exclusion", place_m))
+        if len(excluded):
+            kept[excluded] = is_tracked(excluded)
+        return kept
+
+    def _are_in(self, kind: str, place_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        inside = np.zeros(len(place_m), dtype=bool)
         for zone in self:
-            if zone.kind != "guard":
-                out |= zone.depth_m(place_m) >= 0.0
-        return out
+            if zone.kind == kind:
+                inside |= zone.depth_m(place_m) >= 0.0
+        return inside
 
     def update(
         self,
@@ -423,3 +438,22 @@ def _segment_distance_m(
     length2 = float(along @ along)
     share = np.clip((place_m - a) @ along / length2, 0.0, 1.0) if length2 > 0.0 else 0.0
     return np.hypot(*(place_m - a - np.multiply.outer(share, along)).T)
+
+
+def are_of_tracks(
+    place_m: NDArray[np.float64],
+    std_m: NDArray[np.float64],
+    mean: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+    ahead_s: NDArray[np.float64] | float = 0.0,
+) -> NDArray[np.bool_]:
+    """Whether plots (n, 2) of that standard deviation (n,) may be of one of some tracks: (n,).
+
+    These have states (k, 4) of [north, vnorth, east, veast], `ahead_s` before the plots.
+    """
+    ahead_s = np.broadcast_to(ahead_s, len(mean))[:, np.newaxis]
+    now_m = mean[:, ::2] + ahead_s * mean[:, 1::2]
+    variance = np.diagonal(covariance, axis1=1, axis2=2)
+    now_m2 = (variance[:, ::2] + ahead_s**2 * variance[:, 1::2]).sum(axis=1)
+    off_m = np.linalg.norm(place_m[:, np.newaxis] - now_m, axis=2)
+    return (off_m <= _OF_TRACK * np.sqrt(std_m[:, np.newaxis] ** 2 + now_m2)).any(axis=1)

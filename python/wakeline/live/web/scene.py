@@ -141,7 +141,7 @@ class Scene:
             self._plots = (self.version, text)
         always = {
             name: _rounded(picture.get(name), 7 if name == "own" else 3)
-            for name in ("time_s", "live", "own", "replay")
+            for name in ("time_s", "live", "own", "ashore", "replay")
         }
         self._always = _dumps(always)
 

@@ -53,6 +53,8 @@ _MOST_OCTETS = 65536  # of anything that a client sends
 _MOST_CLIENTS = 32
 _MOST_WAITING = 1 << 18  # octets buffered for a client before a send waits
 _PICTURE_S = 0.25
+_LONGEST_PICTURE_S = 1.5  # between pictures of a busy session
+_BUSY_S = 2.5  # without a picture, after which a page hears that there will be one
 _ECHO_S = 0.04
 _ECHO_OCTETS_PER_S = 1.3e6
 _ROWS_AT_ONCE = 256
@@ -181,7 +183,7 @@ class WebApp:
             if self.clients or not self._scene.version:
                 await self.take_picture()
             took_s = time.monotonic() - began_s
-            await asyncio.sleep(max(_PICTURE_S, 5.0 * took_s))
+            await asyncio.sleep(min(max(_PICTURE_S, 5.0 * took_s), _LONGEST_PICTURE_S))
 
     async def take_picture(self) -> None:
         """Take the picture now, if the last one is not of this moment."""
@@ -356,7 +358,11 @@ class WebApp:
                 text, version = self._scene.message(version)
                 self.octets_sent += len(text)
                 await stream.send_str(text)
-                await changed.wait()
+                while not changed.is_set():
+                    try:
+                        await asyncio.wait_for(changed.wait(), _BUSY_S)
+                    except asyncio.TimeoutError:
+                        await stream.send_json({"type": "busy"})
 
         async def receive(text: str) -> None:
             answer, number = await self._answer(text)

@@ -134,7 +134,7 @@ class SignalK:
         first_s = self._first_seen.setdefault(track_id, time_s)
         acquiring = track.get("status") in ("tentative", "held")
         position: dict[str, Any] = {}
-        if own is not None:
+        if own is not None and not own.get("lost"):
             north_m = track["north_m"] - own["north_m"]
             east_m = track["east_m"] - own["east_m"]
             position["bearing"] = round(math.atan2(east_m, north_m) % _TURN_RAD, 4)

@@ -1,6 +1,8 @@
 // The two streams of the server: pictures and commands as JSON, echoes as octets.
 
 const WAIT_MS = [100, 200, 400]; // the last again and again: the picture is back within 1 s
+const SILENT_MS = 4000; // a server that is busy says so in between
+const DEAD_MS = 12000; // then a new connection is made
 
 class Stream {
   constructor(path, onMessage, onState) {
@@ -9,24 +11,48 @@ class Stream {
     this.onState = onState;
     this.failures = 0;
     this.wanted = true;
+    this.heard_ms = 0;
+    this.alive = false;
     this.open();
   }
 
   open() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    this.socket = new WebSocket(`${scheme}://${location.host}${this.path}`);
-    this.socket.binaryType = "arraybuffer";
-    this.socket.onopen = () => {
+    const socket = new WebSocket(`${scheme}://${location.host}${this.path}`);
+    this.socket = socket;
+    this.heard_ms = performance.now();
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
       this.failures = 0;
-      this.onState(true);
     };
-    this.socket.onmessage = (event) => this.onMessage(event.data);
-    this.socket.onclose = () => {
-      this.onState(false);
+    socket.onmessage = (event) => {
+      this.heard_ms = performance.now();
+      this.state(true);
+      this.onMessage(event.data);
+    };
+    socket.onclose = () => {
+      if (this.socket !== socket) return;
+      this.state(false);
       if (!this.wanted) return;
       setTimeout(() => this.wanted && this.open(), WAIT_MS[Math.min(this.failures, WAIT_MS.length - 1)]);
       this.failures += 1;
     };
+  }
+
+  state(alive) {
+    if (alive === this.alive) return;
+    this.alive = alive;
+    this.onState(alive);
+  }
+
+  /** A server that is silent shows an old picture as one that is gone does. */
+  check() {
+    const silent_ms = performance.now() - this.heard_ms;
+    if (silent_ms > SILENT_MS) this.state(false);
+    if (silent_ms > DEAD_MS && this.socket.readyState <= WebSocket.OPEN) {
+      this.socket.close();
+      this.open();
+    }
   }
 
   send(text) {
@@ -42,7 +68,7 @@ class Stream {
 }
 
 export class Link {
-  constructor({ onHello, onPicture, onEchoes, onGap, onState }) {
+  constructor({ onHello, onPicture, onBusy, onEchoes, onGap, onState }) {
     this.number = 0;
     this.waiting = new Map();
     this.onEchoes = onEchoes;
@@ -53,6 +79,7 @@ export class Link {
         const message = JSON.parse(data);
         if (message.type === "hello") onHello(message);
         else if (message.type === "picture") onPicture(message);
+        else if (message.type === "busy") onBusy();
         else if (message.type === "answer") this.answered(message);
       },
       (open) => {
@@ -63,6 +90,7 @@ export class Link {
         onState(open);
       },
     );
+    setInterval(() => this.pictures.check(), 1000);
     this.echoes = null;
   }
 

@@ -98,6 +98,7 @@ const link = new Link({
     }
     if (!fitted) fit();
     if (selected !== null && !store.tracks.has(selected)) select(null);
+    warn(store.note ?? "");
     fresh = true;
   },
   onEchoes: (buffer) => {
@@ -107,14 +108,21 @@ const link = new Link({
   onGap: (rows) => {
     echoes.gap += rows;
   },
+  onBusy: () => warn("The server is busy: the picture is old"),
   onState: (open) => {
     connected = open;
-    byId("link").hidden = open;
-    setText(byId("link"), open ? "" : "No connection: the picture is old");
-    document.body.classList.toggle("old", !open);
-    changed();
+    warn(open ? "" : "No connection: the picture is old");
   },
 });
+
+/** Says why the picture is old; nothing if it is not. */
+function warn(text) {
+  if (byId("link").textContent === text) return;
+  byId("link").hidden = !text;
+  setText(byId("link"), text);
+  document.body.classList.toggle("old", Boolean(text));
+  changed();
+}
 
 /** Where the antenna of an echo image is: ashore, or aboard own ship. */
 const placeOf = (here) => (number) => {
@@ -189,7 +197,10 @@ function openCard() {
   const name = element("input", { type: "text", maxlength: "31", placeholder: "Name", "aria-label": "Name of the target", value: track.name });
   const rename = async (event) => {
     event.preventDefault();
-    if ((await command({ command: "rename", track_id: track.id, name: name.value })).ok) say(name.value ? `Target ${track.id} is now ${name.value}.` : `Target ${track.id} has no name now.`);
+    const answer = await command({ command: "rename", track_id: track.id, name: name.value });
+    if (!answer.ok) return;
+    name.value = answer.name ?? name.value;
+    say(name.value ? `Target ${track.id} is now ${name.value}.` : `Target ${track.id} has no name now.`);
   };
   const drop = async () => {
     if ((await command({ command: "drop", track_id: track.id })).ok) {
@@ -220,10 +231,11 @@ function fillCard() {
   setText(title, called ? `${called} (${track.id})` : `Target ${track.id}`);
   const rows = [
     ["Range, bearing", `${distance(Math.hypot(north, east), settings.units)}, ${angle(Math.atan2(east, north))}`],
-    ["Speed, course", `${speed(Math.hypot(track.vnorth, track.veast), settings.units)}, ${angle(Math.atan2(track.veast, track.vnorth))}`],
   ];
-  if (track.mode) rows.push(["Motion", track.mode]);
-  const danger = store.encounters.find((one) => one.first === 0 && one.second === track.id);
+  const acquiring = track.status === "held" || track.status === "tentative";
+  if (!acquiring) rows.push(["Speed, course", `${speed(Math.hypot(track.vnorth, track.veast), settings.units)}, ${angle(Math.atan2(track.veast, track.vnorth))}`]);
+  if (track.mode && !acquiring) rows.push(["Motion", track.mode]);
+  const danger = !acquiring && store.encounters.find((one) => one.first === 0 && one.second === track.id);
   if (danger || (track.cpa !== null && track.cpa_time !== null)) {
     const [cpa_m, ahead_s, share] = danger ? [danger.cpa_m, danger.tcpa_s, danger.probability] : [track.cpa, track.cpa_time - time_s, track.probability];
     rows.push(["CPA to own ship", ahead_s >= 0 ? `${distance(cpa_m, settings.units)} in ${minutes(ahead_s)}` : "past"]);
@@ -423,14 +435,20 @@ for (const name of Object.keys(settings.show)) {
 }
 
 const limitUnit = () => (settings.units === "nautical" ? NAUTICAL_MILE_M : 1);
-function showLimits() {
+function showLimits(again = false) {
   setText(byId("cpa-unit"), settings.units === "nautical" ? "NM" : "m");
-  if (!store.limits || document.activeElement === byId("cpa-limit") || document.activeElement === byId("tcpa-limit")) return;
+  if (!store.limits) return;
+  if (!again && (document.activeElement === byId("cpa-limit") || document.activeElement === byId("tcpa-limit"))) return;
   byId("cpa-limit").value = String(+(store.limits.cpa_limit_m / limitUnit()).toFixed(3));
   byId("tcpa-limit").value = String(+(store.limits.tcpa_limit_s / 60).toFixed(2));
 }
 for (const id of ["cpa-limit", "tcpa-limit"]) {
-  byId(id).addEventListener("change", () => command({ command: "limits", cpa_limit_m: Number(byId("cpa-limit").value) * limitUnit(), tcpa_limit_s: Number(byId("tcpa-limit").value) * 60 }));
+  byId(id).addEventListener("change", async () => {
+    const [cpa_limit_m, tcpa_limit_s] = [Number(byId("cpa-limit").value) * limitUnit(), Number(byId("tcpa-limit").value) * 60];
+    const answer = await command({ command: "limits", cpa_limit_m, tcpa_limit_s });
+    setText(byId("limit-answer"), answer.ok ? "" : answer.error);
+    if (!answer.ok) showLimits(true);
+  });
 }
 byId("settings-open").addEventListener("click", () => {
   showLimits();
@@ -455,7 +473,8 @@ function showReplay() {
     [scrub.min, scrub.max] = [replay.start_s, replay.end_s];
     scrub.value = String(store.now(performance.now()));
   }
-  setText(byId("clock"), `${clock(Number(scrub.value))} (${minutes(Number(scrub.value) - replay.start_s)} of ${minutes(replay.end_s - replay.start_s)})`);
+  const seeking = byId("replay").classList.contains("seeking") ? "Seeking " : "";
+  setText(byId("clock"), `${seeking}${clock(Number(scrub.value))} (${minutes(Number(scrub.value) - replay.start_s)} of ${minutes(replay.end_s - replay.start_s)})`);
   setText(byId("play"), replay.paused ? "▶" : "❚❚");
   byId("play").setAttribute("aria-label", replay.paused ? "Play" : "Pause");
   if (document.activeElement !== byId("speed")) byId("speed").value = String(replay.speed);
@@ -467,7 +486,9 @@ byId("scrub").addEventListener("input", () => {
   scrubbing = true;
 });
 byId("scrub").addEventListener("change", async () => {
+  byId("replay").classList.add("seeking");
   await command({ command: "replay", time_s: Number(byId("scrub").value) });
+  byId("replay").classList.remove("seeking");
   scrubbing = false;
 });
 byId("replay").addEventListener("submit", (event) => event.preventDefault());

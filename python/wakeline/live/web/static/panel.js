@@ -111,18 +111,19 @@ export class Panel {
       row.dataset.id = track.id;
       const past = one.ahead_s !== null && one.ahead_s < 0;
       const other = one.danger && one.danger.first !== 0 ? (one.danger.first === track.id ? one.danger.second : one.danger.first) : null;
+      const acquiring = track.status === "held" || track.status === "tentative";
       const figures = [
         `${store.nameOf(track) || track.id}${track.status === "coasting" ? " ·" : ""}`,
         bare(distance(one.range_m, settings.units)),
         shortAngle(one.bearing),
-        bare(speed(Math.hypot(track.vnorth, track.veast), settings.units)),
-        shortAngle(Math.atan2(track.veast, track.vnorth)),
+        acquiring ? "" : bare(speed(Math.hypot(track.vnorth, track.veast), settings.units)),
+        acquiring ? "" : shortAngle(Math.atan2(track.veast, track.vnorth)),
         past ? "past" : bare(distance(one.cpa_m, settings.units)),
         past ? "" : minutes(one.ahead_s),
         past ? "" : percent(one.probability),
       ];
       figures.forEach((text, c) => setText(row.children[c], text));
-      row.title = [track.mode, other ? `closest approach to target ${other}` : "", track.status === "coasting" ? "without an echo at present" : ""].filter(Boolean).join(", ");
+      row.title = [store.nameOf(track), acquiring ? "being acquired" : track.mode, other ? `closest approach to target ${other}` : "", track.status === "coasting" ? "without an echo at present" : ""].filter(Boolean).join(", ");
       row.className = [one.danger && !past ? "danger" : "", track.id === selected ? "selected" : "", track.status].filter(Boolean).join(" ");
       if (body.children[k] !== row) body.insertBefore(row, body.children[k] ?? null);
     });
@@ -140,7 +141,8 @@ export class Panel {
     const order = { alarm: 0, warning: 1, caution: 2 };
     const lasting = store.alarms.filter((alarm) => alarm.state !== "ended");
     const state = { active: 0, silenced: 1, acknowledged: 2 };
-    lasting.sort((a, b) => state[a.state] - state[b.state] || order[a.priority] - order[b.priority] || b.begin_s - a.begin_s);
+    const until_s = (alarm) => (alarm.tcpa_s >= 0 ? alarm.tcpa_s : Infinity);
+    lasting.sort((a, b) => state[a.state] - state[b.state] || order[a.priority] - order[b.priority] || (until_s(a) < until_s(b) ? -1 : until_s(a) > until_s(b) ? 1 : b.begin_s - a.begin_s));
     const ended = store.alarms.filter((alarm) => alarm.state === "ended").slice(0, MOST_ENDED);
     const brief = [...lasting, ...ended].map((a) => [a.alarm_id, a.state, a.text, Math.round(a.cpa_m ?? -1), Math.round(a.tcpa_s ?? 0), Math.round(100 * (a.probability ?? 0)), settings.units]);
     if (!this.changed("alarms", brief)) return;
@@ -203,7 +205,8 @@ export class Panel {
     for (const [name, one] of Object.entries(status.radars ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
       const off = Math.abs(one.clock_offset_s) > 0 ? `, its clock is ${minutes(Math.abs(one.clock_offset_s))} ${one.clock_offset_s > 0 ? "slow" : "fast"}` : "";
-      rows.push([`Radar ${name}`, Number.isFinite(age) ? `${age} s old, ${one.plots} plots${off}` : "nothing received", age > 10 || !Number.isFinite(age) ? "bad" : "good"]);
+      const unused = one.unused_why ? `, not used: ${one.unused_why}` : "";
+      rows.push([`Radar ${name}`, Number.isFinite(age) ? `${age} s old, ${one.plots} plots${off}${unused}` : "nothing received", age > 10 || !Number.isFinite(age) || unused ? "bad" : "good"]);
     }
     for (const [name, one] of Object.entries(status.inputs ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
@@ -214,7 +217,7 @@ export class Panel {
     }
     if (status.late?.too_late_inputs) rows.push(["Late data", `${status.late.too_late_inputs} sectors, more than ${status.late.window_s} s`, "bad"]);
     for (const [name, one] of Object.entries(status.own ?? {})) {
-      if (one?.source || one?.sources?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source ? "good" : "bad"]);
+      if (one?.source || one?.sources?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source && one.fresh !== false ? "good" : "bad"]);
     }
     if (store.replay) rows.push(["Recording", `${store.replay.paused ? "paused" : "playing"} at ${clock(store.time_s)}`, "good"]);
     byId("sources").hidden = rows.length === 0;
@@ -227,8 +230,9 @@ export class Panel {
     const rows = [];
     if (own.known) {
       rows.push(["HDG", own.heading === null ? "unknown" : shortAngle(own.heading)]);
-      rows.push(["SOG", speed(own.speed, settings.units)], ["COG", shortAngle(own.course)]);
-    } else rows.push(["Shore station", ""]);
+      if (own.lost) rows.push(["Position lost", ""]);
+      else rows.push(["SOG", speed(own.speed, settings.units)], ["COG", shortAngle(own.course)]);
+    } else rows.push([store.ashore ? "Shore station" : "No position of own ship", ""]);
     rows.push([clock(time_s), ""]);
     if (!this.changed("own", rows)) return;
     byId("own").replaceChildren(...rows.map(([name, text]) => element("span", {}, element("small", { text: name }), ` ${text}`)));

@@ -19,6 +19,7 @@ export class Store {
     this.status = {};
     this.limits = null;
     this.own = null;
+    this.ashore = true;
     this.replay = null;
     this.origin_deg = null;
     this.note = null;
@@ -41,6 +42,7 @@ export class Store {
     }
     Object.assign(this, { time_s: message.time_s, received_ms: now_ms, version: message.version });
     for (const name of ["own", "replay"]) this[name] = message[name];
+    this.ashore = message.ashore ?? !message.own;
     for (const name of ["radars", "alarms", "zones", "encounters", "status", "limits", "origin_deg", "note", "plots"]) {
       if (name in message) this[name] = message[name] ?? (Array.isArray(this[name]) ? [] : null);
     }
@@ -96,13 +98,14 @@ export class Store {
     const own = this.own;
     if (!own) {
       const radar = this.radars.find((one) => one.north_m !== null && one.north_m !== undefined);
-      return { known: false, north: radar?.north_m ?? 0, east: radar?.east_m ?? 0, vnorth: 0, veast: 0, heading: null, course: null, speed: 0 };
+      return { known: false, lost: false, north: radar?.north_m ?? 0, east: radar?.east_m ?? 0, vnorth: 0, veast: 0, heading: null, course: null, speed: 0 };
     }
     const dt = Math.min(time_s - this.time_s, MOST_AGE_S);
     const [vnorth, veast] = [own.vnorth_mps ?? 0, own.veast_mps ?? 0];
-    const speed = Math.hypot(vnorth, veast);
+    const speed = own.lost ? null : Math.hypot(vnorth, veast);
     return {
       known: true,
+      lost: Boolean(own.lost),
       north: own.north_m + dt * vnorth,
       east: own.east_m + dt * veast,
       vnorth,
@@ -120,7 +123,7 @@ export class Store {
 
   /** Dangerous encounters: those of own ship, or, ashore, of any two. */
   get dangers() {
-    return this.own ? this.encounters.filter((one) => one.first === 0) : this.encounters;
+    return this.ashore ? this.encounters : this.encounters.filter((one) => one.first === 0);
   }
 
   /** The likeliest danger of each track. */
