@@ -10,6 +10,7 @@ import pytest
 from wakeline import plot, scenario
 from wakeline.cli import main
 from wakeline.extraction import noise_of, read_plots_of_video
+from wakeline.extraction.settings import threshold_above
 from wakeline.recording import read_tracks, write_video
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -294,6 +295,24 @@ def test_noise_alone_gives_no_track(tmp_path):
 def test_small_pictures_have_noise_too(pieces):
     amplitude = np.random.default_rng(pieces).rayleigh(20.0, (pieces, 32)).astype(np.uint8)
     assert 5.0 < noise_of(amplitude).std < 30.0
+
+
+NOISES = {
+    "linear": lambda rng, shape: rng.rayleigh(20.0, shape),
+    "of powers": lambda rng, shape: rng.exponential(12.0, shape),
+    "sea": lambda rng, shape: rng.gamma(2.0, 6.0, shape),
+    "normal": lambda rng, shape: rng.normal(60.0, 12.0, shape),
+    "logarithmic": lambda rng, shape: 120.0 + 20.0 * np.log10(rng.exponential(1.0, shape)),
+}
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize("share", [1e-2, 1e-3])
+def test_a_threshold_is_exceeded_by_the_wanted_share_of_any_noise(noise, share):
+    rng = np.random.default_rng(5)
+    amplitude = NOISES[noise](rng, (720, 1024)).clip(0.0, 255.0).astype(np.uint8)
+    threshold = threshold_above(noise_of(amplitude), share, above_db=0.0)
+    assert 0.4 * share < np.mean(amplitude >= threshold) < 2.0 * share
 
 
 @pytest.mark.parametrize("receiver", ["linear", "logarithmic"])

@@ -401,6 +401,31 @@ def test_each_radar_says_why_it_is_not_used():
         assert radar["shore"]["unused_why"] == ""
 
 
+def test_targets_are_not_lost_while_the_radar_is_silent():
+    """Those that are not there when it has been back for some turns are."""
+    session, alarms = joyride_session(), {"lost target": [], "sensor lost": []}
+
+    def note(kind, values):
+        if values.get("type") == "alarm" and values["change"] == "began":
+            alarms[values["kind"]].append((session.time_s, *values["tracks"]))
+
+    session.listeners.append(note)
+    for k in range(900):
+        t = 0.25 * k
+        session.feed(t, "own", json.dumps({"own": {"north_m": 0.0, "east_m": 0.0}}).encode())
+        if k % 10 or 100.0 <= t < 120.0:
+            continue
+        for bearing_rad in (0.5, 2.0, 4.0) if t < 120.0 else (0.5, 2.0):
+            plot = {"time_s": t, "range_m": 1500.0, "bearing_rad": bearing_rad}
+            session.feed(t, "radar", json.dumps(plot).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        session.feed(t, "radar", json.dumps(mark).encode())
+    assert len(alarms["sensor lost"]) == 1
+    ((lost_s, track_id),) = alarms["lost target"]
+    assert 125.0 < lost_s < 145.0
+    assert track_id not in {one.track_id for one in session.tracker.tracks()}
+
+
 def test_own_ship_that_is_lost_is_where_it_was_with_its_heading():
     session = wl.live.Session({"radar": [JOYRIDE]})
     for k in range(40):

@@ -435,6 +435,15 @@ def test_what_operators_did_is_replayed(tmp_path):
     assert {one.track_id: one.name for one in again.tracker.tracks()}[number] == "ferry"
 
 
+def test_what_is_no_file_is_not_recorded_to_and_stays(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path in (pipe, tmp_path):
+        with pytest.raises(OSError, match="not a file"):
+            Service(wl.live.Session({}), path).run()
+        assert path.exists()
+
+
 def test_a_cut_file_loses_its_last_record_only(tmp_path):
     whole, rng = tmp_path / "s.pcap", random.Random(1)
     recorder = Recorder(whole, {"radar": []})

@@ -176,9 +176,11 @@ def test_columns_are_named_by_the_caller(name, file):
     assert read(name, lines, file, columns=columns)[0] == wanted
     with pytest.raises(RecordingError, match="a column is missing"):
         read(name, lines, file)
-    if name == "ais":
-        with pytest.raises(RecordingError, match="wanted thier"):
-            read(name, lines, file, columns={**columns, "thier": "cog"})
+    with pytest.raises(RecordingError, match="wanted thier"):
+        read(name, lines, file, columns={**columns, "thier": ours[-1]})
+    more = [f"{line},{cell}" for line, cell in zip(lines, ["Note"] + ["x"] * ROWS, strict=False)]
+    with pytest.raises(RecordingError, match="got meaning"):
+        read(name, more, file, columns={**columns, "note": "meaning"})
 
 
 # ------------------------------------------------------------------ AIS

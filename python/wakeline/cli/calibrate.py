@@ -103,6 +103,7 @@ def run(arguments: argparse.Namespace) -> None:
     settings = read_settings(arguments.config, arguments.radar)
     recording = options.opened(arguments, settings)
     reports = _reports(arguments, recording)
+    options.columns_of(arguments).require_found()
     settings = settings.knowing(recording.radar)
     found = calibrate(recording, reports, config=settings, position_std_m=arguments.position_std)
     names = vessel_names(reports)
@@ -134,7 +135,7 @@ def _reports(arguments: argparse.Namespace, recording: Recording) -> list[Any]:
             arguments.ais,
             recording,
             origin_deg=arguments.origin,
-            columns=dict(arguments.columns),
+            columns=options.columns_of(arguments),
         )
     settings = read_settings(radar=arguments.against_radar)
     other = options.opened(

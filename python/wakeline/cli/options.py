@@ -8,6 +8,7 @@ from typing import Any
 
 from wakeline.recording import Recording, radar_names
 from wakeline.recording.azimuths import AZIMUTHS
+from wakeline.recording.table import ColumnNames
 from wakeline.tracking import Settings, open_recording
 
 
@@ -78,8 +79,15 @@ def opened(arguments: argparse.Namespace, settings: Settings, **others: Any) -> 
         **{"recording": arguments.plots, "own": arguments.own} | others,
         period_s=settings.period_s,
         azimuth=arguments.azimuth,
-        columns=dict(arguments.columns),
+        columns=columns_of(arguments),
     )
+
+
+def columns_of(arguments: argparse.Namespace) -> ColumnNames:
+    """What ``--columns`` names, the same for all files of a command."""
+    if not isinstance(arguments.columns, ColumnNames):
+        arguments.columns = ColumnNames(dict(arguments.columns))
+    return arguments.columns
 
 
 def files(arguments: argparse.Namespace, *names: str) -> list[Path]:

@@ -83,7 +83,7 @@ def _plots(arguments: argparse.Namespace) -> Path | None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do what the command line asks for."""
-    columns = dict(arguments.columns)
+    columns = options.columns_of(arguments)
     plots = _plots(arguments)
     recording = read_plots(plots, arguments.scans, arguments.truth, columns=columns)
     if not any(map(len, recording)):
@@ -91,6 +91,7 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.scans, "there are no scans", line=1, wanted="a column scan, or --plots"
         )
     tracks = read_tracks(arguments.tracks, columns=columns, notes=recording.notes)
+    columns.require_found()
     _check_scenarios(arguments.tracks, tracks, recording)
     watched = _Watched(recording.name, recording.episodes, recording.notes)
     score = metrics.score(tracks, watched, gate_m=arguments.gate)

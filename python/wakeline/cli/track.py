@@ -142,6 +142,7 @@ def run(arguments: argparse.Namespace) -> None:
         raise ValueError("track needs a recording (see wakeline track --help)")
     outputs.check_no_input("--out", outputs.of_tracking(arguments.out), inputs(arguments))
     recording, track = _opened(arguments, settings)
+    options.columns_of(arguments).require_found()
     known = settings.knowing(recording.radar)
     recording.notes.extend(known.memory_notes(arguments.method))
     radar = _radar_text(arguments, settings, known, recording)
@@ -186,7 +187,7 @@ def _opened(
         acquire=arguments.acquire,
         azimuth=arguments.azimuth,
         range_scale_m=arguments.range_scale,
-        columns=dict(arguments.columns),
+        columns=options.columns_of(arguments),
     )
 
 

@@ -50,6 +50,7 @@ def run(arguments: argparse.Namespace) -> None:
     outputs.check_no_input("--out", [written], inputs(arguments))
     settings = read_settings(arguments.config, arguments.radar)
     recording = options.opened(arguments, settings)
+    options.columns_of(arguments).require_found()
     outputs.make_folder(arguments.out)
     tuned = tune(recording, config=settings)
     for note in recording.notes:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 _WINDOW_CELLS = 32
+_WIDENED, _ALIKE = 4, 2.5  # times; standard deviations of the mean of a piece
 
 
 class Noise(NamedTuple):
@@ -21,7 +22,7 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     """The noise of a picture (N, C); None if none is visible.
 
     Noise is estimated from the fifth of all pieces of 32 cells that has the smallest mean without
-    being dark.
+    being dark, and from those whose mean differs no more from that than by the noise itself.
     """
     whole = amplitude.shape[1] // _WINDOW_CELLS * _WINDOW_CELLS
     pieces = amplitude[:, :whole].reshape(-1, _WINDOW_CELLS).astype(np.float32)
@@ -30,8 +31,18 @@ def noise_of(amplitude: np.ndarray) -> Noise | None:
     if len(lit) == 0:
         return None
     low, high = np.quantile(mean[lit], [0.05, 0.25], method="nearest")  # also for few pieces
-    quiet = lit[(mean[lit] >= low) & (mean[lit] <= high)]
-    away = pieces[quiet] - mean[quiet, None]
+    found = _noise_of_pieces(pieces[lit[(mean[lit] >= low) & (mean[lit] <= high)]])
+    for _ in range(_WIDENED if found is not None else 0):
+        alike = np.abs(mean[lit] - found.mean) <= _ALIKE * found.std / np.sqrt(_WINDOW_CELLS)
+        found = _noise_of_pieces(pieces[lit[alike]]) or found
+    return found
+
+
+def _noise_of_pieces(pieces: np.ndarray) -> Noise | None:
+    if len(pieces) == 0:
+        return None
+    mean = pieces.mean(axis=1)
+    away = pieces - mean[:, np.newaxis]
     std = float(np.sqrt(np.mean(away**2)))
     skewness = float(np.mean(away**3)) / std**3 if std > 0 else 0.0
-    return Noise(std, skewness, float(mean[quiet].mean())) if std > 0 else None
+    return Noise(std, skewness, float(mean.mean())) if std > 0 else None

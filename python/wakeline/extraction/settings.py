@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
@@ -66,11 +68,27 @@ def threshold_above(noise: Noise | None, false_alarms: float, above_db: float) -
     """The amplitude that noise exceeds with a probability, raised by so many dB."""
     if noise is None:
         return 1
+    amplitude = noise.mean + noise.std * _exceeded_stds(noise.skewness, false_alarms)
     if noise.skewness < _LOGARITHMIC_BELOW:
-        offset_db = wl.video.threshold_offset_db(false_alarms) + above_db
-        return int(noise.mean + noise.std / _RAYLEIGH_SPREAD_DB * offset_db) + 1
-    factor = wl.video.threshold_factor(false_alarms, train_cells=_MOST_TRAIN_CELLS)
-    return int(noise.mean * factor * 10 ** (above_db / 20)) + 1
+        return int(amplitude + noise.std / _RAYLEIGH_SPREAD_DB * above_db) + 1
+    return int(amplitude * 10 ** (above_db / 20)) + 1
+
+
+def _exceeded_stds(skewness: float, probability: float) -> float:
+    """By how many standard deviations above its mean noise is exceeded with a probability.
+
+    Exact for noise of a linear receiver (Rayleigh), of powers (exponential), in decibels (Gumbel)
+    and for a normal one; between their skewnesses interpolated.
+    """
+    power = -math.log(probability)  # in means of a receiver's noise
+    rayleigh_mean, rayleigh_std = math.sqrt(math.pi / 4.0), math.sqrt(1.0 - math.pi / 4.0)
+    stds = {
+        -1.14: (math.log(power) + np.euler_gamma) / (math.pi / math.sqrt(6.0)),
+        0.0: NormalDist().inv_cdf(1.0 - probability),
+        0.631: (math.sqrt(power) - rayleigh_mean) / rayleigh_std,
+        2.0: power - 1.0,
+    }
+    return float(np.interp(skewness, list(stds), list(stds.values())))
 
 
 def _settings(kind: Kind, noise: Noise | None, above_db: float) -> dict[str, float]:

@@ -278,6 +278,7 @@ class Alarms:
         own: Sequence[float] | None = None,
         own_covariance: Any = None,
         is_ashore: bool | None = None,
+        is_blind: bool = False,
         heading_rad: float = math.nan,
         events: Iterable[Any] = (),
         sensors: Iterable[Sensor | tuple] = (),
@@ -299,6 +300,9 @@ class Alarms:
         is_ashore : bool, optional
             Whether there is no own ship; default: none is given. Of one whose position is lost the
             close passings stay as they were.
+        is_blind : bool
+            Whether a radar is silent or has just come back: targets that vanish meanwhile are not
+            lost if they are there again after it.
         heading_rad : float, optional
         events : iterable of wakeline.Event
             Of the tracker; a loss has its reason there.
@@ -325,7 +329,7 @@ class Alarms:
 
         lasts_s = self.config.momentary_s
         self._end_momentary("time over", lambda one: time_s - one.alarm.begin_s >= lasts_s)
-        self._pass_targets(now, events)
+        self._pass_targets(now, events, is_blind)
         place = None if own is None else OwnPlace(own[0], own[2], heading_rad)
         std_m = np.sqrt(_largest_variance(covariance))
         places = mean[:, 0::2]
@@ -348,9 +352,14 @@ class Alarms:
         changes, self._changes = self._changes, []
         return changes
 
-    def _pass_targets(self, now: dict[int, str], events: Iterable[Any]) -> None:
+    def _pass_targets(
+        self, now: dict[int, str], events: Iterable[Any], is_blind: bool = False
+    ) -> None:
         reasons = {e.track_id: e.reason for e in events if getattr(e, "kind", "") == "lost"}
-        for track_id in [track_id for track_id in self._tracks if track_id not in now]:
+        gone = [track_id for track_id in self._tracks if track_id not in now]
+        for track_id in gone:
+            if is_blind and track_id not in self._dropped:
+                continue
             was = self._tracks.pop(track_id)
             dropped = track_id in self._dropped
             self._dropped.discard(track_id)

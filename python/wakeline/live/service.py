@@ -99,7 +99,7 @@ class Service:
     def _begun_recorder(self, time_s: float) -> Recorder:
         """A recorder whose settings are written; a new file that does not take them is removed."""
         config, path = self.session.config, Path(self._record)
-        is_new = not segments_of(path) or segments_of(path)[-1].stat().st_size == 0
+        is_new = not segments_of(path)
         limits, recorder = config.session, None
         try:
             recorder = Recorder(
@@ -154,6 +154,8 @@ class Service:
     def _begin(self) -> None:
         if self._record is not None:
             path = Path(self._record)
+            if path.exists() and not path.is_file():
+                raise FileExistsError(errno.EEXIST, "not a file that can be recorded to", str(path))
             if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
                 for record in read_session(path, last_segment=True):
                     self._continue(path, record)

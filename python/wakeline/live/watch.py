@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
@@ -14,6 +15,7 @@ from wakeline._checks import positive
 from .alarms import AlarmConfig, AlarmEvent, AlarmLog, Alarms, Disagreement, Sensor
 from .zones import Zone, Zones, placed
 
+_SILENT_TURNS, _SOME_TURNS, _BACK_TURNS = 2.5, 20.0, 5.0  # of an antenna without data
 _LIMITS = ("cpa_limit_m", "tcpa_limit_s", "alarm_probability")
 
 
@@ -98,6 +100,8 @@ class AlarmBoard:
 class AlarmWatcher(AlarmBoard):
     """The alarms of a :class:`wakeline.live.Session`: one of its ``watchers``."""
 
+    _blind_until_s = -math.inf
+
     def update(self, session: Any, time_s: float) -> list[dict[str, Any]]:
         """Changes of alarms at a new picture, as events of the session."""
         own = session.own.at(time_s)
@@ -115,12 +119,23 @@ class AlarmWatcher(AlarmBoard):
             ),
             own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
             is_ashore=session.is_ashore,
+            is_blind=self._is_blind(session, time_s),
             heading_rad=own.heading_rad if hasattr(own, "heading_rad") else float("nan"),
             events=[SimpleNamespace(**one) for one in session.news],
             sensors=_sensors(session, time_s),
             disagreements=_disagreements(session),
         )
         return [event_of(one) for one in events]
+
+    def _is_blind(self, session: Any, time_s: float) -> bool:
+        """Whether radars are silent: all of them, one since a short time, or until a moment ago."""
+        heard = [feed for feed in session.feeds.values() if feed.last_s > -math.inf]
+        silent_turns = [(time_s - feed.last_s) / (feed.period_s or 1.0) for feed in heard]
+        if any(_SILENT_TURNS < turns < _SOME_TURNS for turns in silent_turns) or (
+            heard and min(silent_turns) > _SILENT_TURNS
+        ):
+            self._blind_until_s = time_s + _BACK_TURNS * max(feed.period_s or 1.0 for feed in heard)
+        return time_s < self._blind_until_s
 
     def command(self, session: Any, command: Mapping[str, Any]) -> dict[str, Any] | None:
         """The answer to an operator; None for a command of another."""

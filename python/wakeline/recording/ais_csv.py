@@ -17,7 +17,7 @@ from wakeline._units import KNOT_MPS
 
 from .errors import RecordingError
 from .reach import plane_stretch, unreachable
-from .table import TIME_NAMES, Table, is_missing
+from .table import TIME_NAMES, Table, finding_columns, is_missing
 
 COLUMNS = {
     "time": (
@@ -160,6 +160,7 @@ class AisRecording:
         return brief(self, many(len(self.tracks), "track"), many(reports, "report"), when)
 
 
+@finding_columns
 def read_ais(
     path: str | Path,
     *,
@@ -221,7 +222,6 @@ def read_ais(
         )
     notes: list[str] = []
     table = Table(path, COLUMNS, notes, columns)
-    table.require_named(columns)
     table.require("time", "mmsi", "latitude", "longitude")
     time_s = table.times("time")
     mmsi = np.array([number.removesuffix(".0") for number in table.text("mmsi")], dtype=str)

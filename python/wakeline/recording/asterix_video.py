@@ -335,6 +335,8 @@ def _nothing(path: Path, order: _Order) -> RecordingError:
     got = "nothing" if report.first_problem is None else f"this: {report.first_problem}"
     if report.contents.form and not report.contents.used:
         got = str(report.contents)
+        if report.first_problem is not None:
+            got += f", not readable: {report.first_problem}"
     elif path.is_file():  # a pipe is not read again
         got = instead_of_text(octets_of(path)[:_HEAD]) or got
     return RecordingError(path, "no radar video", wanted="sweeps of ASTERIX category 240", got=got)

@@ -15,7 +15,7 @@ from .errors import RecordingError
 from .model import OwnShipMotion
 from .plot_rows import number_scans
 from .scans import grouped, repeated
-from .table import TIME_NAMES, Table
+from .table import TIME_NAMES, Table, finding_columns
 
 OWN_GAP_S = 10.0  # longest step that is interpolated across by default
 _ROUNDED = 1e-4  # of covariances written to six digits
@@ -214,6 +214,7 @@ def read_own_track(
     return rows.by_time()
 
 
+@finding_columns
 def read_own_ship(path: str | Path, *, columns: Mapping[str, str] | None = None) -> OwnShipMotion:
     """Read own ship's track from a file, as :func:`read_plots` describes it.
 

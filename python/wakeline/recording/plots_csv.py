@@ -16,6 +16,7 @@ from .model import Episode, OwnShipMotion, Recording
 from .own_csv import OWN_GAP_S, OwnRows, read_own
 from .plot_rows import PlotRows, read_plot_rows, remark
 from .scans import grouped, revolution_s
+from .table import finding_columns
 from .truth_csv import read_truth
 from .units import period_notes
 
@@ -23,6 +24,7 @@ _MANY, _NEARLY_ALL = 20, 0.9
 _FAR_M = 300e3
 
 
+@finding_columns
 def read_plots(
     plots_path: str | Path | None,
     own_path: str | Path | None = None,

@@ -8,9 +8,9 @@ import itertools
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from functools import cache, partial, wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,8 @@ from .errors import RecordingError
 TIME_NAMES = ("time_s", "time", "timestamp", "timestamp_s", "time_utc", "utc", "datetime")
 TIME_WANTED = "UTC seconds or ISO 8601 text such as 2021-05-04T07:54:53.034Z"
 
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
 _FARTHEST_M = 1e9
 _FASTEST_MPS = 1e6
 _LATEST_S = 1e11  # year 5138; a later time is in another unit
@@ -38,6 +40,56 @@ _ZONE = r"\s*(Z|UTC|GMT|[+-](?:[01]\d|2[0-3])(?::?[0-5]\d)?(?: UTC| GMT)?)?"
 _YEAR_FIRST = re.compile(rf"(\d{{4}})([-/.])(\d{{1,2}})\2(\d{{1,2}}){_CLOCK}{_ZONE}", re.IGNORECASE)
 _YEAR_LAST = re.compile(rf"(\d{{1,2}})([-/.])(\d{{1,2}})\2(\d{{4}}){_CLOCK}{_ZONE}", re.IGNORECASE)
 _LINE_END = re.compile(r"\r\n|\r|\n")
+
+
+class ColumnNames(dict[str, str]):
+    """Names of columns in some files and what they are; each is to be in one of the files."""
+
+    def __init__(self, names: Mapping[str, str] | None = None) -> None:
+        super().__init__(names or {})
+        self._read: list[Path] = []
+        self._headers: dict[str, str] = {}
+        self._meanings: set[str] = set()
+
+    def note(
+        self, path: Path, header: Sequence[str], meanings: Mapping[str, Sequence[str]]
+    ) -> None:
+        """Note what a file has and what its columns may be."""
+        self._read.append(path)
+        self._headers |= {_plain(name): name for name in header}
+        for column, names in meanings.items():
+            self._meanings |= {_plain(column), *map(_plain, names)}
+
+    def require_found(self) -> None:
+        """Raise RecordingError for a name that no file has, and for what no column is."""
+        for name, ours in self.items() if self._read else ():
+            if _plain(name) not in self._headers:
+                got = cut(", ".join(self._headers.values()))
+                raise RecordingError(self._read[0], "a column is missing", wanted=name, got=got)
+            if _plain(ours) not in self._meanings:
+                wanted = ", ".join(sorted(self._meanings))
+                raise RecordingError(
+                    self._read[0], "there is no such meaning", column=name, wanted=wanted, got=ours
+                )
+
+
+def finding_columns(read: Callable[_P, _R]) -> Callable[_P, _R]:
+    """Has a function that reads files reject names in `columns` that none of them has.
+
+    The names of a `ColumnNames` may be in other files, which its owner reads.
+    """
+
+    @wraps(read)
+    def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+        columns = kwargs.get("columns")
+        if isinstance(columns, ColumnNames):
+            return read(*args, **kwargs)
+        names = kwargs["columns"] = ColumnNames(columns)
+        result = read(*args, **kwargs)
+        names.require_found()
+        return result
+
+    return checked
 
 
 class Table:
@@ -96,6 +148,8 @@ class Table:
         self._number = _number if self._separator == "," else _number_with_comma
         if not self.header:
             raise RecordingError(self.path, "the file is empty", line=1, wanted="a header line")
+        if isinstance(columns, ColumnNames):
+            columns.note(self.path, self.header, meanings)
         self._header_line = first + 1
         self._place = self._recognise(meaning | renamed)
         self._bad: dict[int, RecordingError] = {}
@@ -113,14 +167,6 @@ class Table:
     def line(self, row: int) -> int:
         """Line of the file with `row`."""
         return int(self._line[row])
-
-    def require_named(self, columns: Mapping[str, str] | None) -> None:
-        """Raise RecordingError unless the file has the columns that the caller names."""
-        plain = {_plain(name) for name in self.header}
-        for name in columns or {}:
-            if _plain(name) not in plain:
-                got = cut(", ".join(self.header))
-                raise RecordingError(self.path, "a column is missing", wanted=name, got=got)
 
     def require(self, *columns: str) -> None:
         """Raise RecordingError unless the file has each of `columns`."""

@@ -16,7 +16,7 @@ from wakeline._frames import data_frame
 
 from .errors import RecordingError
 from .files import replacing
-from .table import TIME_NAMES, Table
+from .table import TIME_NAMES, Table, finding_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -208,6 +208,7 @@ class Tracks:
 _COLUMNS = tuple(column.name for column in fields(Tracks))
 
 
+@finding_columns
 def read_tracks(
     path: str | Path,
     *,

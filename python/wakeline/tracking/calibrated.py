@@ -12,7 +12,7 @@ import numpy as np
 import wakeline as wl
 from wakeline._brief import many
 from wakeline.recording import Recording, RecordingError, ais_csv, read_ais, truth_csv
-from wakeline.recording.table import Table
+from wakeline.recording.table import Table, finding_columns
 
 from .settings import Settings, read_settings
 from .tracked import TrackedEpisode, TrackedRecording
@@ -44,6 +44,7 @@ class RadarTrack:
     antenna_east_m: np.ndarray
 
 
+@finding_columns
 def read_reports(
     path: str | Path,
     recording: Recording,

@@ -156,7 +156,9 @@ TEST(Partial, WhatMakesNoSenseIsRejectedAndNothingTakesMemory) {
   EXPECT_EQ(tracker.save(), before);
   scan.time_s = 30.0;
   const NoHeap fence;
-  EXPECT_EQ(tracker.partial(scan).plot_track_id[2], 0) << "a value that is not finite is of none";
+  const ScanReport report = tracker.partial(scan);
+  EXPECT_EQ(report.plot_track_id[2], 0) << "a value that is not finite is of none";
+  EXPECT_EQ(report.rejected_plots, 1);
   EXPECT_EQ(fence.allocations(), 0);
   expect_sound(tracker);
 }

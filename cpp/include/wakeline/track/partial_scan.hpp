@@ -30,6 +30,11 @@ struct PartialScan {
   double false_per_unit = 1.0;          ///< false values per rad, or per m
   OwnShip own = {};                     ///< of the sensor at that time
 
+  /// Whether a value can be one of such a sensor.
+  [[nodiscard]] bool is_usable(double value) const noexcept {
+    return in_range(value) && (part == PositionPart::kBearing || value >= 0.0);
+  }
+
   [[nodiscard]] bool is_valid() const noexcept {
     return sensor >= 0 && sensor < static_cast<int>(kMostPartialSensors) && std::isfinite(time_s) &&
            std > 0.0 && in_range(std) && false_per_unit > 0.0 && in_range(false_per_unit) &&

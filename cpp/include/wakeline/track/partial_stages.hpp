@@ -96,8 +96,10 @@ class PartialStages {
                              1.0 - detection, std::span(share.data(), count));
       track.kinematics = kinematics_of(estimator.estimate());
     }
+    const auto used = std::count_if(values.begin(), values.end(),
+                                    [&](double value) { return scan.is_usable(value); });
     return {Status::kOk, picture_.plot_track_id, picture_.events,
-            static_cast<int>(scan.values.size() - values.size())};
+            static_cast<int>(std::ssize(scan.values) - used)};
   }
 
  private:

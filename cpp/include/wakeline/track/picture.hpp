@@ -85,7 +85,8 @@ struct Picture {
     auto place = std::find_if(radars.begin(), radars.end(),
                               [](const RadarState& known) { return !known.in_use; });
     require(place != radars.end() || radars.size() < kMostRadars, "radar",
-            "at most kMostRadars radars", static_cast<int>(radars.size()) + 1);
+            "at most 16 radars", static_cast<int>(radars.size()) + 1);
+    static_assert(kMostRadars == 16);
     RadarState of_radar(validated(radar), config);
     place = place == radars.end() ? radars.insert(place, std::move(of_radar))
                                   : (*place = std::move(of_radar), place);
