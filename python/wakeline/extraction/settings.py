@@ -21,7 +21,8 @@ _WINDOW_SHARE = 8  # of a sweep, so that every cell has others for comparison
 _LOGARITHMIC_BELOW = 0.2  # skewness of noise: 0.63 behind a linear receiver, -1.1 in decibels
 _RAYLEIGH_SPREAD_DB = 5.57  # standard deviation of noise in decibels
 _ABOVE_NOISE_DB = range(0, 40, 2)
-_MOST_PLOTS = 150  # of a revolution
+_MOST_PLOTS, _FEW_PLOTS = 150, 20  # of a revolution
+_STEEP = 0.6  # share of clutter that remains 2 dB higher
 _MOST_CELLS = 65536
 _WIDE_ECHO_RAD = np.deg2rad(20.0)
 _LONG_ECHO_M = 800.0  # longer echoes are land
@@ -52,16 +53,24 @@ def settings_for(turn: RadarVideo, kind: Kind) -> tuple[dict[str, float], int]:
     """Settings for this picture, and its threshold relative to that for noise, in dB.
 
     The threshold is raised until a revolution has an acceptable number of plots, because land and
-    sea clutter fluctuate more than noise.
+    sea clutter fluctuate more than noise, and on for as long as that removes many of them: echoes
+    of targets are not that near to it.
     """
     noise = noise_of(turn.amplitude)
-    most = _MOST_PLOTS * min(len(turn) * turn.azimuth_width_rad / (2 * np.pi), 1.0)
+    part = min(len(turn) * turn.azimuth_width_rad / (2 * np.pi), 1.0)
+    chosen, fewest = None, _MOST_PLOTS * part
     for above_db in _ABOVE_NOISE_DB:
         settings = _settings(kind, noise, above_db)
         trial = wl.PlotExtractor(**settings)
-        if len(trial.process(turn)) + len(trial.finish()) <= most:
+        plots = len(trial.process(turn)) + len(trial.finish())
+        if plots > (fewest if chosen is None else _STEEP * fewest):
+            if chosen is not None:
+                break
+            continue
+        chosen, fewest = (settings, above_db), plots
+        if plots <= _FEW_PLOTS * part:
             break
-    return settings, above_db
+    return chosen or (settings, above_db)
 
 
 def threshold_above(noise: Noise | None, false_alarms: float, above_db: float) -> int:

@@ -29,7 +29,7 @@ from wakeline.scenario.video import SeaClutter
 from .config import InputConfig, LiveConfig, OutputConfig, OwnConfig, RadarConfig, SessionConfig
 
 ORIGIN_DEG = (63.40, 10.40)
-STATION_DEG = (63.55, 10.00)
+STATION_DEG = (63.50, 10.25)
 TTM_PORT = 10111
 _OWN_S, _AIS_S = 0.5, 6.0
 _PIECES = 64  # of a revolution of the strait's radar

@@ -146,7 +146,7 @@ function fit() {
   const reach = echoes.reach(placeOf(here), here);
   if (!away.length && !reach) return;
   away.sort((a, b) => a - b);
-  const targets_m = away.length ? 1.4 * away[Math.floor(0.95 * (away.length - 1))] : 0;
+  const targets_m = away.length ? away[Math.floor(0.95 * (away.length - 1))] : 0;
   view.fit(reach || targets_m, settings.units);
   if (!chosen.has("vectorMinutes") && !given.has("vectorMinutes")) {
     settings.vectorMinutes = view.range_m < 2000 ? 1 : view.range_m < 6000 ? 3 : 6;
