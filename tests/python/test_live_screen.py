@@ -10,7 +10,7 @@ import pytest
 import browser as chromium
 import wakeline as wl
 from harbor import ECHOES, RANGE_M, Harbor, recorded_plots
-from wakeline.live.web import WebServer
+from wakeline.live.web import WebServer, server
 
 pytestmark = pytest.mark.skipif(not chromium.is_there(), reason="needs chromium and chromedriver")
 
@@ -465,6 +465,35 @@ def test_a_page_is_back_when_the_server_is(page):
         page.wait_for("wakeline.store.tracks.size === 2")
         assert time.monotonic() - began_s < 1.5  # with what asking the browser takes
         page.wait_for("document.querySelector('#link').hidden")
+
+
+@pytest.mark.parametrize(("busy_s", "words"), [(0.5, "busy"), (1e9, "No connection")])
+def test_a_page_says_that_its_picture_is_old(page, monkeypatch, busy_s, words):
+    """The server waits for the session, and says so or says nothing."""
+    monkeypatch.setattr(server, "_BUSY_S", busy_s)
+    harbor = Harbor()
+    harbor.add(1, 800.0, 300.0)
+    with WebServer(harbor, port=0) as serving:
+        harbor.url = serving.url
+        show(page, harbor)
+        with harbor.lock:
+            page.wait_for("!document.querySelector('#link').hidden")
+            assert words in page.run("document.querySelector('#link').textContent")
+        page.wait_for("document.querySelector('#link').hidden")
+
+
+def test_a_limit_that_is_none_is_answered_and_put_back(page, harbor):
+    harbor.add(1, 800.0, 300.0)
+    show(page, harbor)
+    before = harbor.board.alarms.limits
+    page.press("#settings-open")
+    change = "((i) => { i.value = arguments[0]; i.dispatchEvent(new Event('change')); })"
+    for text in ("", "0", "-1"):
+        page.run(f"{change}(document.querySelector('#cpa-limit'))", text)
+        page.wait_for("document.querySelector('#limit-answer').textContent.includes('cpa_limit_m')")
+        page.wait_for("Number(document.querySelector('#cpa-limit').value) > 0")
+    page.run("document.querySelector('#settings').close()")
+    assert harbor.board.alarms.limits == before
 
 
 # A replay -----------------------------------------------------------------------------------------

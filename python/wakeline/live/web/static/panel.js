@@ -4,6 +4,7 @@ import { TURN, distance, shortAngle, minutes, percent, speed, clock } from "./un
 const FAR_DEG = 0.5; // of the plane's north from true north
 const MOST_ROWS = 150;
 const MOST_ENDED = 6;
+const LATE_S = 60; // that late data count as a fault
 
 export function element(tag, { text, className, title, ...rest } = {}, ...children) {
   const made = document.createElement(tag);
@@ -36,6 +37,7 @@ export class Panel {
     this.onZoneEdit = onZoneEdit;
     this.rows = new Map();
     this.keys = {};
+    this.late = { count: 0, until_s: 0 };
     byId("silence-all").addEventListener("click", () => onCommand({ command: "silence", alarm_id: "all" }));
     byId("acknowledge-all").addEventListener("click", () => onCommand({ command: "acknowledge", alarm_id: "all" }));
   }
@@ -215,7 +217,10 @@ export class Panel {
       const bad = problems ? `, ${problems} unreadable` : "";
       rows.push([name, `${Number.isFinite(age) ? `${age} s old` : "nothing received"}${lost}${bad}`, Number.isFinite(age) && age < 15 ? "good" : "bad"]);
     }
-    if (status.late?.too_late_inputs) rows.push(["Late data", `${status.late.too_late_inputs} sectors, more than ${status.late.window_s} s`, "bad"]);
+    const late = status.late?.too_late_inputs ?? 0;
+    if (late > this.late.count) this.late.until_s = store.time_s + LATE_S;
+    this.late.count = late;
+    if (late) rows.push(["Late data", `${late} sectors, more than ${status.late.window_s} s`, store.time_s < this.late.until_s ? "bad" : ""]);
     for (const [name, one] of Object.entries(status.own ?? {})) {
       if (one?.source || one?.sources?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source && one.fresh !== false ? "good" : "bad"]);
     }
@@ -229,7 +234,8 @@ export class Panel {
     const { store, own, settings, time_s } = this.scene;
     const rows = [];
     if (own.known) {
-      rows.push(["HDG", own.heading === null ? "unknown" : shortAngle(own.heading)]);
+      const instead = settings.up === "head" ? "unknown: course up" : "unknown";
+      rows.push(["HDG", own.heading === null ? instead : shortAngle(own.heading)]);
       if (own.lost) rows.push(["Position lost", ""]);
       else rows.push(["SOG", speed(own.speed, settings.units)], ["COG", shortAngle(own.course)]);
     } else rows.push([store.ashore ? "Shore station" : "No position of own ship", ""]);
