@@ -6,6 +6,7 @@ import abc
 import contextlib
 import errno
 import queue
+import re
 import select
 import socket
 import struct
@@ -34,6 +35,7 @@ _WAIT_S = 0.2  # until a thread looks whether it should end
 _BATCH = 64
 _RECEIVE_BUFFER = 16 << 20
 _PIECE = 1 << 16
+_TIME = re.compile(rb'"time_s"\s*:\s*(-?\d{1,15}(?:\.\d+)?)')
 _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
 _MOST_QUEUED = 1 << 20  # octets for a client that does not read
@@ -298,9 +300,14 @@ class NetworkInput(_Thread):
         return True
 
     def _file(self) -> bool:
+        """The octets of a file; JSON lines with times as far apart as these are."""
         self.connection = "reading"
         last = b""
         with Path(self._path()).open("rb") as file:
+            if file.read(1) == b"{":
+                file.seek(0)
+                return self._json_lines(iter(lambda: file.readline(_PIECE), b""))
+            file.seek(0)
             while not self._ends.is_set() and (octets := file.read(_PIECE)):
                 self._take(self.config.name, [(now_s(), octets)])
                 last = octets[-1:]
@@ -308,15 +315,27 @@ class NetworkInput(_Thread):
             self._take(self.config.name, [(now_s(), b"\n")])
         return True
 
+    def _json_lines(self, lines: Iterable[bytes]) -> bool:
+        def timed() -> Iterator[tuple[float | None, bytes]]:
+            for line in lines:
+                found = _TIME.search(line)
+                yield float(found[1]) if found else None, line.rstrip(b"\n") + b"\n"
+
+        return self._paced(timed())
+
     def _pcap(self) -> bool:
-        """The datagrams of a capture, as far apart as they were."""
-        self.connection, offset_s = "reading", None
-        for datagram in datagrams_of(self._path()):
-            if datagram.time_s is not None:
-                offset_s = now_s() - datagram.time_s if offset_s is None else offset_s
-                if self._ends.wait(max(datagram.time_s + offset_s - now_s(), 0.0)):
+        self.connection = "reading"
+        return self._paced((one.time_s, one.octets) for one in datagrams_of(self._path()))
+
+    def _paced(self, messages: Iterable[tuple[float | None, bytes]]) -> bool:
+        """Take messages as far apart as their times are; one without comes with the one before."""
+        offset_s = None
+        for time_s, octets in messages:
+            if time_s is not None:
+                offset_s = now_s() - time_s if offset_s is None else offset_s
+                if self._ends.wait(max(time_s + offset_s - now_s(), 0.0)):
                     return True
-            self._take(self.config.name, [(now_s(), datagram.octets)])
+            self._take(self.config.name, [(now_s(), octets)])
         return True
 
     def _signalk(self) -> bool:
