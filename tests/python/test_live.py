@@ -399,10 +399,15 @@ def test_each_radar_says_why_it_is_not_used():
         radar = session.status()["radars"]
         assert (radar["A"]["unused_why"] == "") == (t < 8.0)
         assert radar["shore"]["unused_why"] == ""
+    mark = {"from_rad": 0.0, "to_rad": math.tau, "time_s": 40.0}
+    session.feed(40.0, "x", json.dumps({"radar": "shore", "sector": mark}).encode())
+    assert session.status()["frozen"] == ""  # of a radar that is silent
 
 
-def test_targets_are_not_lost_while_the_radar_is_silent():
-    """Those that are not there when it has been back for some turns are."""
+@pytest.mark.parametrize("silence_s", [20.0, 60.0])
+def test_targets_are_not_lost_while_the_radar_is_silent(silence_s):
+    """Those that are not there when it has been back for some turns are, while they are held."""
+    back_s = 100.0 + silence_s
     session, alarms = joyride_session(), {"lost target": [], "sensor lost": []}
 
     def note(kind, values):
@@ -413,14 +418,17 @@ def test_targets_are_not_lost_while_the_radar_is_silent():
     for k in range(900):
         t = 0.25 * k
         session.feed(t, "own", json.dumps({"own": {"north_m": 0.0, "east_m": 0.0}}).encode())
-        if k % 10 or 100.0 <= t < 120.0:
+        if k % 10 or 100.0 <= t < back_s:
             continue
-        for bearing_rad in (0.5, 2.0, 4.0) if t < 120.0 else (0.5, 2.0):
+        for bearing_rad in (0.5, 2.0, 4.0) if t < back_s else (0.5, 2.0):
             plot = {"time_s": t, "range_m": 1500.0, "bearing_rad": bearing_rad}
             session.feed(t, "radar", json.dumps(plot).encode())
         mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
         session.feed(t, "radar", json.dumps(mark).encode())
     assert len(alarms["sensor lost"]) == 1
+    if silence_s > 30.0:
+        assert alarms["lost target"] == []
+        return
     ((lost_s, track_id),) = alarms["lost target"]
     assert 125.0 < lost_s < 145.0
     assert track_id not in {one.track_id for one in session.tracker.tracks()}

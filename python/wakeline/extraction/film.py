@@ -27,6 +27,7 @@ from wakeline.recording.azimuths import (
     turned_to_north,
 )
 from wakeline.recording.own_csv import OWN_GAP_S, OwnRows, read_own_track
+from wakeline.recording.table import finding_columns
 from wakeline.recording.units import period_notes
 
 from .plots import Extraction, Plots, joined
@@ -57,6 +58,7 @@ class VideoRecording(Recording):
         return self.radar["range_std_m"], float(np.deg2rad(self.radar["bearing_std_deg"]))
 
 
+@finding_columns
 def read_plots_of_video(
     path: str | Path,
     own_path: str | Path | None = None,

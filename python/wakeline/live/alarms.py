@@ -46,6 +46,7 @@ _DANGER = (
 )
 _PAIR_S = 6e-6  # between looks at close passings, times the square of the number of vessels
 _MOST_ENDED = 200
+_OUTAGE_S = 30.0  # after a longer one of a radar its targets have other numbers
 _MOST_TARGET_ALARMS = 50
 
 
@@ -199,6 +200,7 @@ class _Held:
 class _Shown:
     since_s: float
     name: str = ""
+    gone_s: float = math.inf  # when it vanished while a radar was silent
 
 
 @dataclass
@@ -301,8 +303,8 @@ class Alarms:
             Whether there is no own ship; default: none is given. Of one whose position is lost the
             close passings stay as they were.
         is_blind : bool
-            Whether a radar is silent or has just come back: targets that vanish meanwhile are not
-            lost if they are there again after it.
+            Whether a radar is silent or has just come back: targets that vanish meanwhile are lost
+            only if they are not back after it, and only after half a minute at most.
         heading_rad : float, optional
         events : iterable of wakeline.Event
             Of the tracker; a loss has its reason there.
@@ -358,9 +360,13 @@ class Alarms:
         reasons = {e.track_id: e.reason for e in events if getattr(e, "kind", "") == "lost"}
         gone = [track_id for track_id in self._tracks if track_id not in now]
         for track_id in gone:
+            was = self._tracks[track_id]
             if is_blind and track_id not in self._dropped:
+                was.gone_s = min(was.gone_s, self.time_s)
                 continue
-            was = self._tracks.pop(track_id)
+            del self._tracks[track_id]
+            if self.time_s - was.gone_s > _OUTAGE_S:
+                continue  # for the silence, which was an alarm
             dropped = track_id in self._dropped
             self._dropped.discard(track_id)
             established = self.time_s - was.since_s >= self.config.established_s
@@ -374,6 +380,7 @@ class Alarms:
                 if self.config.new_target:
                     self._happen("new target", f"new {_called(track_id, name)}", (track_id,))
             self._tracks[track_id].name = name
+            self._tracks[track_id].gone_s = math.inf
 
     def _pass_crossing(self, crossing: Crossing) -> None:
         zone, track_id = crossing.zone, crossing.track_id

@@ -13,7 +13,7 @@ _COUNTERS = {
     "plots": "Plots received.",
     "sectors": "Sectors received.",
     "unused_plots": "Plots not used, because own ship was not known.",
-    "excluded_plots": "Plots in exclusion zones or on land.",
+    "excluded_plots": "Plots in exclusion zones or on land that are not used.",
     "lost_sweeps": "Sweeps missing according to the sender's count.",
 }
 _GAUGES = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import abc
 import contextlib
 import errno
+import math
 import queue
 import re
 import select
@@ -17,7 +18,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from urllib.parse import parse_qs, urlsplit
 
 from wakeline.recording.containers import datagrams_of
@@ -35,7 +36,8 @@ _WAIT_S = 0.2  # until a thread looks whether it should end
 _BATCH = 64
 _RECEIVE_BUFFER = 16 << 20
 _PIECE = 1 << 16
-_TIME = re.compile(rb'"time_s"\s*:\s*(-?\d{1,15}(?:\.\d+)?)')
+_LONGEST_STEP_S = 600.0  # between JSON lines of a file: those of two clocks are farther apart
+_TIME = re.compile(rb'"time_s"\s*:\s*(-?\d{1,15}(?:\.\d*)?(?:[eE][-+]?\d{1,2})?)')
 _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
 _MOST_QUEUED = 1 << 20  # octets for a client that does not read
@@ -304,10 +306,8 @@ class NetworkInput(_Thread):
         self.connection = "reading"
         last = b""
         with Path(self._path()).open("rb") as file:
-            if file.read(1) == b"{":
-                file.seek(0)
-                return self._json_lines(iter(lambda: file.readline(_PIECE), b""))
-            file.seek(0)
+            if file.peek(1)[:1] == b"{":
+                return self._paced(_timed_lines(file), _LONGEST_STEP_S)
             while not self._ends.is_set() and (octets := file.read(_PIECE)):
                 self._take(self.config.name, [(now_s(), octets)])
                 last = octets[-1:]
@@ -315,26 +315,26 @@ class NetworkInput(_Thread):
             self._take(self.config.name, [(now_s(), b"\n")])
         return True
 
-    def _json_lines(self, lines: Iterable[bytes]) -> bool:
-        def timed() -> Iterator[tuple[float | None, bytes]]:
-            for line in lines:
-                found = _TIME.search(line)
-                yield float(found[1]) if found else None, line.rstrip(b"\n") + b"\n"
-
-        return self._paced(timed())
-
     def _pcap(self) -> bool:
         self.connection = "reading"
         return self._paced((one.time_s, one.octets) for one in datagrams_of(self._path()))
 
-    def _paced(self, messages: Iterable[tuple[float | None, bytes]]) -> bool:
-        """Take messages as far apart as their times are; one without comes with the one before."""
-        offset_s = None
+    def _paced(
+        self, messages: Iterable[tuple[float | None, bytes]], longest_s: float = math.inf
+    ) -> bool:
+        """Take messages as far apart as their times are, but for longer steps.
+
+        One without a time comes with the one before.
+        """
+        last_s = offset_s = math.nan
         for time_s, octets in messages:
             if time_s is not None:
-                offset_s = now_s() - time_s if offset_s is None else offset_s
-                if self._ends.wait(max(time_s + offset_s - now_s(), 0.0)):
-                    return True
+                if not abs(time_s - last_s) <= longest_s:
+                    offset_s = now_s() - time_s
+                last_s = time_s
+                self._ends.wait(max(time_s + offset_s - now_s(), 0.0))
+            if self._ends.is_set():
+                return True
             self._take(self.config.name, [(now_s(), octets)])
         return True
 
@@ -354,6 +354,17 @@ class NetworkInput(_Thread):
 
     def _path(self) -> str:
         return self._url.netloc + self._url.path
+
+
+def _timed_lines(file: BinaryIO) -> Iterator[tuple[float | None, bytes]]:
+    """The lines of a file, or pieces of longer ones, with the times in them."""
+    last = b"\n"
+    while octets := file.readline(_PIECE):
+        found = _TIME.search(octets)
+        yield float(found[1]) if found else None, octets
+        last = octets[-1:]
+    if last != b"\n":
+        yield None, b"\n"
 
 
 class NetworkOutput(_Thread):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 _NUMBERS = 100  # of targets in TTM
-_RESTING = 5  # of these, where there are more tracks, for those that come
+_RESTING = 5  # of these rest, for targets that come
 _KEEPS = 0.8  # so much nearer is a target that takes the place of another
 _LEAST_INTERVAL_S = 3.0  # OpenCPN draws no trail of a target that comes more often than 2 s
 
@@ -152,7 +152,7 @@ class TtmOutput(WireOutput):
     def _chosen(self, session: Session) -> np.ndarray:
         """Of more than there are numbers those in danger, then the nearest."""
         shown = session.shown
-        if len(shown) <= _NUMBERS:
+        if len(shown) <= _NUMBERS - _RESTING:
             return super()._chosen(session)
         own = session.fix_of_receivers()
         rank_m = np.hypot(shown.mean[:, 0] - own.north_m, shown.mean[:, 2] - own.east_m)

@@ -516,8 +516,8 @@ class RecordedPlots:
 
     def _are_tracked(self, scan: Scan, which: np.ndarray) -> np.ndarray:
         radar, table = self._tracker.radar, self._tracker.tracks(time_s=self._end_s[self._next])
-        std_m = np.hypot(radar.range_std_m, radar.bearing_std_rad * scan.range_m[which])
-        return are_of_tracks(scan.position_m[which], std_m, table.mean, table.covariance)
+        plots = radar, scan.range_m[which], scan.position_m[which]
+        return are_of_tracks(*plots, table.mean, table.covariance)
 
     def tracks(self) -> Any:
         """At the last scan, those that are being acquired too."""

@@ -62,6 +62,15 @@ class RadarFeed:
     _marks: bool = False
     _turn_begin_s: float | None = None
 
+    def is_silent_at(self, time_s: float) -> bool:
+        """Whether it has given nothing for three turns and 10 s."""
+        return time_s - self.last_s > self.longest_silence_s
+
+    @property
+    def longest_silence_s(self) -> float:
+        """After that it is lost."""
+        return max(3.0 * self.period_s, 10.0)
+
     def add(self, plot: PlotRow) -> list[Sector]:
         """Add a plot; the turn that ends before it, of a radar without marks."""
         self.plots += 1

@@ -182,8 +182,8 @@ class Service:
                 raise ValueError(f"no input named {record.input}")
             with self.session.lock:
                 feed_record(self.session, record)
-            behind_s = now_s() - self.session.time_s
-            self.session.note = f"The record is read again: the picture is {behind_s:.0f} s old"
+            if math.isfinite(behind_s := now_s() - self.session.time_s):
+                self.session.note = f"The record is read again: the picture is {behind_s:.0f} s old"
         except ValueError as error:
             raise RecordingError(
                 path,

@@ -464,9 +464,8 @@ class Session:
         radar, shown = self.tracker.radars[list(self.feeds).index(feed.name)], self.shown
 
         def is_tracked(which: np.ndarray) -> np.ndarray:
-            std_m = np.hypot(radar.range_std_m, radar.bearing_std_rad * range_m[which])
-            ahead_s = time_s - shown.time_s
-            return are_of_tracks(plots_m[which], std_m, shown.mean, shown.covariance, ahead_s)
+            plots = radar, range_m[which], plots_m[which]
+            return are_of_tracks(*plots, shown.mean, shown.covariance, time_s - shown.time_s)
 
         return self.watchers[0].alarms.zones.kept(plots_m, is_tracked)
 
@@ -737,7 +736,7 @@ class Session:
     @property
     def frozen(self) -> str:
         """Why tracks are not updated, or which radars are not used; empty if all are."""
-        heard = [feed for feed in self.feeds.values() if feed.last_s > -math.inf]
+        heard = [feed for feed in self.feeds.values() if not feed.is_silent_at(self.time_s)]
         unused = [feed for feed in heard if feed.unused_why]
         if unused and len(unused) == len(heard):
             return f"tracks frozen: {unused[0].unused_why}"
@@ -816,6 +815,7 @@ class Session:
             "tracker": _text(self.tracker.save()),
             "heard": self.tracker.heard,
             "alarms": self.watchers[0].alarms.save(),
+            "acquired": list(self._acquired.items()),
             "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
         }
 
@@ -830,6 +830,7 @@ class Session:
             if state["origin_deg"] is not None:
                 self._set_origin(*map(float, state["origin_deg"]))
             self.watchers[0].alarms.restore(state["alarms"])
+            self._acquired = {int(one): int(hits) for one, hits in state.get("acquired", ())}
             self.time_s = float(state["time_s"])
             for name, text in state["outputs"].items():
                 if name in self.outputs:
@@ -892,7 +893,7 @@ class Session:
         else:
             place = float(command["north_m"]), float(command["east_m"])
         std_m = float(command.get("position_std_m", 50.0))
-        if not self.tracker.time_s:
+        if not self.tracker.heard:
             return _answer(False, "no radar has given data yet")
         known = self.tracker.table().track_id.tolist()
         track_id = self.tracker.designate(self.tracker.time_s, *place, std_m)

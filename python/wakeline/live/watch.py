@@ -130,11 +130,11 @@ class AlarmWatcher(AlarmBoard):
     def _is_blind(self, session: Any, time_s: float) -> bool:
         """Whether radars are silent: all of them, one since a short time, or until a moment ago."""
         heard = [feed for feed in session.feeds.values() if feed.last_s > -math.inf]
-        silent_turns = [(time_s - feed.last_s) / (feed.period_s or 1.0) for feed in heard]
+        silent_turns = [(time_s - feed.last_s) / feed.period_s for feed in heard]
         if any(_SILENT_TURNS < turns < _SOME_TURNS for turns in silent_turns) or (
             heard and min(silent_turns) > _SILENT_TURNS
         ):
-            self._blind_until_s = time_s + _BACK_TURNS * max(feed.period_s or 1.0 for feed in heard)
+            self._blind_until_s = time_s + _BACK_TURNS * max(feed.period_s for feed in heard)
         return time_s < self._blind_until_s
 
     def command(self, session: Any, command: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -160,7 +160,7 @@ def event_of(event: AlarmEvent) -> dict[str, Any]:
 def _sensors(session: Any, time_s: float) -> list[Sensor]:
     """Radars, silent after three turns and 10 s, and own ship's data where they are too old."""
     sensors = [
-        Sensor(f"radar {name}", time_s - feed.last_s, max(3.0 * (feed.period_s or 0.0), 10.0))
+        Sensor(f"radar {name}", time_s - feed.last_s, feed.longest_silence_s)
         for name, feed in session.feeds.items()
         if feed.last_s > float("-inf")
     ]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wakeline._brief import cut, quoted
 from wakeline._checks import finite, not_negative
+from wakeline.track import Radar
 
 KINDS = ("guard", "exclusion", "land")
 TRIGGERS = ("entry", "exit", "occupancy")
@@ -441,16 +442,18 @@ def _segment_distance_m(
 
 
 def are_of_tracks(
+    radar: Radar,
+    range_m: NDArray[np.float64],
     place_m: NDArray[np.float64],
-    std_m: NDArray[np.float64],
     mean: NDArray[np.float64],
     covariance: NDArray[np.float64],
     ahead_s: NDArray[np.float64] | float = 0.0,
 ) -> NDArray[np.bool_]:
-    """Whether plots (n, 2) of that standard deviation (n,) may be of one of some tracks: (n,).
+    """Whether plots of a radar, at ranges (n,) and places (n, 2), may be of some tracks: (n,).
 
     These have states (k, 4) of [north, vnorth, east, veast], `ahead_s` before the plots.
     """
+    std_m = np.hypot(radar.range_std_m, radar.bearing_std_rad * range_m)
     ahead_s = np.broadcast_to(ahead_s, len(mean))[:, np.newaxis]
     now_m = mean[:, ::2] + ahead_s * mean[:, 1::2]
     variance = np.diagonal(covariance, axis1=1, axis2=2)

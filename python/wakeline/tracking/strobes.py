@@ -22,7 +22,7 @@ from wakeline.extraction.turns import Turn
 from wakeline.recording import Episode, OwnShipMotion, RadarVideo, RecordingError
 from wakeline.recording.azimuths import check_azimuth, headings_at
 from wakeline.recording.own_csv import OwnRows, read_own_track
-from wakeline.recording.table import TIME_NAMES, Table
+from wakeline.recording.table import TIME_NAMES, Table, finding_columns
 
 from .settings import Settings
 from .tracked import TrackedEpisode, columns_of, tracked_episode
@@ -71,6 +71,7 @@ def read_designations(path: str | Path) -> list[Designation]:
     return sorted(Designation(*map(float, row)) for row in zip(*columns, strict=True))
 
 
+@finding_columns
 def follow_video(
     path: str | Path,
     settings: Settings | None = None,

@@ -41,6 +41,9 @@ class PartialStages {
         std::min(scan.values.size(), static_cast<std::size_t>(picture_.config.max_plots)));
     picture_.plot_track_id.assign(values.size(), 0);
     const double extent_m = picture_.state().radar.extent_std_m;
+    const auto is_inside = [&](const PartOfPosition& part, double value) {
+      return scan.is_usable(value) && part.squared_distance(value) <= kPartialGate;
+    };
     // How likely each value is by all tracks, and by the one by which it is likeliest.
     value_likelihood_.assign(values.size(), 0.0);
     value_best_.assign(values.size(), 0.0);
@@ -52,7 +55,7 @@ class PartialStages {
       const PartOfPosition& part =
           parts_.emplace_back(scan, position_in(picture_.belief_at(track, scan.time_s)), extent_m);
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (!(part.squared_distance(values[k]) <= kPartialGate)) continue;
+        if (!is_inside(part, values[k])) continue;
         const double likelihood = part.likelihood(values[k]);
         value_likelihood_[k] += likelihood;
         if (likelihood > value_best_[k]) {
@@ -71,8 +74,7 @@ class PartialStages {
       const PartOfPosition& part = parts_[place];
       double ratio = 0.0;  // of the values to being false or another target's
       for (std::size_t k = 0; k < values.size(); ++k)
-        if (part.squared_distance(values[k]) <= kPartialGate)
-          ratio += part.likelihood(values[k]) / others_than(part, k);
+        if (is_inside(part, values[k])) ratio += part.likelihood(values[k]) / others_than(part, k);
       double& in_view = track.in_view[static_cast<std::size_t>(scan.sensor)];
       const double detection = kPartialDetection * in_view;
       const double seen = in_view * (1.0 - kPartialDetection + kPartialDetection * ratio);
@@ -85,7 +87,7 @@ class PartialStages {
       std::array<double, kMaxAlternatives> share;
       std::size_t count = 0;
       for (std::size_t k = 0; k < values.size() && count < readings.size(); ++k) {
-        if (!(part.squared_distance(values[k]) <= kPartialGate)) continue;
+        if (!is_inside(part, values[k])) continue;
         const Gaussian<2> fix = part.fix(values[k]);
         readings[count++] = {Fix{fix.covariance + alignment.added_m2(late_s)},
                              fix.mean + late_s * track.velocity(),

@@ -112,7 +112,6 @@ class ScanStages {
 
  private:
   static constexpr double kClockPeriods = 10.0;  ///< in which a plot of another time is in error
-  static constexpr double kWidestMode = 9.0;     ///< covariance of one of an estimator, of mixtures
   static constexpr double kSilentPeriods = 2.0;  ///< after which a track coasts by time
   static constexpr std::size_t kGroup = 64;      ///< tracks that are stepped together
   static constexpr int kNoPlot = -1;
@@ -439,11 +438,12 @@ class ScanStages {
     for (const int slot : waiting_) {
       const Track& track = picture_.tracks.at(slot);
       bool is_rival = false;
-      for_each_in_strip(track, kWidestMode, picture_.config.outlier_variance(), [&](int plot) {
-        if (state().plots[plot].beam_rad > turn_ago_rad) state().plots.keep(plot);
-        is_rival = is_rival ||
-                   (is_candidate_[static_cast<std::size_t>(plot)] != 0 && is_near(track, plot));
-      });
+      for_each_in_strip(
+          track, TrackGate::kWidestMode, picture_.gate.generous_factor(), [&](int plot) {
+            if (state().plots[plot].beam_rad > turn_ago_rad) state().plots.keep(plot);
+            is_rival = is_rival ||
+                       (is_candidate_[static_cast<std::size_t>(plot)] != 0 && is_near(track, plot));
+          });
       if (is_rival) rivals_.push_back(slot);
     }
     for (int plot = 0; plot < state().plots.size(); ++plot)

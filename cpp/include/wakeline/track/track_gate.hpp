@@ -30,6 +30,9 @@ struct ValidatedPlot {
 /// Bar-Shalom, Li, Multitarget-Multisensor Tracking, 1995, 2.3.
 class TrackGate {
  public:
+  /// The variance of the widest mode of an estimator over that of the mixture, about.
+  static constexpr double kWidestMode = 9.0;
+
   explicit TrackGate(const TrackerConfig& config)
       : threshold_(EllipsoidalGate<2>(ChiSquareGate{config.gate_probability}).threshold()),
         outlier_variance_(config.outlier_variance()),
@@ -43,13 +46,13 @@ class TrackGate {
                                           const ScanPlots& plots) noexcept {
     validated_.clear();
     const auto& p = track.kinematics.covariance;
-    const double own_m = 3.0 * std::sqrt(threshold_ * (p(0, 0) + p(2, 2)));
+    const double own_m = std::sqrt(kWidestMode) * std::sqrt(threshold_ * (p(0, 0) + p(2, 2)));
     const double apart_s = plots.greatest_lag_s(track.time_s);
     const double way_m = alignment.longest_way_m(apart_s);
     const double way_m2 = alignment.added_m2(apart_s).trace();
     const GateSquare square = modes.about(track.position());
     const auto reach_m = [&](double plot_m2) {
-      const double outlier_m2 = kElsewhere * outlier_variance_ * plot_m2 + way_m2;
+      const double outlier_m2 = generous_factor() * plot_m2 + way_m2;
       // Generous: the widest mode of an estimator may be some times wider than the mixture.
       const double generous_m = own_m + std::sqrt(threshold_ * outlier_m2);
       return std::min(generous_m, square.reach_m(outlier_m2, threshold_)) + way_m;
@@ -75,6 +78,9 @@ class TrackGate {
     return validated_;
   }
 
+  /// The covariance of a plot as an outlier over that as read, at most.
+  [[nodiscard]] double generous_factor() const noexcept { return kElsewhere * outlier_variance_; }
+
   /// γ, the largest squared distance inside the gate.
   [[nodiscard]] double threshold() const noexcept { return threshold_; }
 
@@ -86,7 +92,7 @@ class TrackGate {
   /// The covariance of a plot as an outlier, at most.
   [[nodiscard]] Mat<double, 2, 2> generous_r(const ScanPlot& plot,
                                              const TimeAlignment& alignment) const noexcept {
-    return kElsewhere * outlier_variance_ * plot.position.covariance + alignment.added_m2(plot);
+    return generous_factor() * plot.position.covariance + alignment.added_m2(plot);
   }
 
   double threshold_;

@@ -307,7 +307,7 @@ class SignalK:
         place = [wanted.get("bearing"), wanted.get("distance")]
         if not all(isinstance(v, (int, float)) and math.isfinite(v) for v in place):
             raise _error(web.HTTPBadRequest, "wanted bearing (rad) and distance (m)")
-        if own is None:
+        if own is None or own.get("lost"):
             raise _error(web.HTTPConflict, "own ship's position is unknown")
         command = {
             "command": "acquire",

@@ -12,7 +12,7 @@ class Stream {
     this.failures = 0;
     this.wanted = true;
     this.heard_ms = 0;
-    this.alive = false;
+    this.alive = null; // unknown
     this.open();
   }
 

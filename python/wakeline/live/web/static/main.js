@@ -435,22 +435,25 @@ for (const name of Object.keys(settings.show)) {
 }
 
 const limitUnit = () => (settings.units === "nautical" ? NAUTICAL_MILE_M : 1);
-function showLimits(again = false) {
+const LIMITS = {
+  "cpa-limit": () => +(store.limits.cpa_limit_m / limitUnit()).toFixed(3),
+  "tcpa-limit": () => +(store.limits.tcpa_limit_s / 60).toFixed(2),
+};
+function showLimits() {
   setText(byId("cpa-unit"), settings.units === "nautical" ? "NM" : "m");
-  if (!store.limits) return;
-  if (!again && (document.activeElement === byId("cpa-limit") || document.activeElement === byId("tcpa-limit"))) return;
-  byId("cpa-limit").value = String(+(store.limits.cpa_limit_m / limitUnit()).toFixed(3));
-  byId("tcpa-limit").value = String(+(store.limits.tcpa_limit_s / 60).toFixed(2));
+  if (!store.limits || document.activeElement === byId("cpa-limit") || document.activeElement === byId("tcpa-limit")) return;
+  for (const [id, limit] of Object.entries(LIMITS)) byId(id).value = String(limit());
 }
-for (const id of ["cpa-limit", "tcpa-limit"]) {
+for (const id of Object.keys(LIMITS)) {
   byId(id).addEventListener("change", async () => {
     const [cpa_limit_m, tcpa_limit_s] = [Number(byId("cpa-limit").value) * limitUnit(), Number(byId("tcpa-limit").value) * 60];
     const answer = await command({ command: "limits", cpa_limit_m, tcpa_limit_s });
     setText(byId("limit-answer"), answer.ok ? "" : answer.error);
-    if (!answer.ok) showLimits(true);
+    if (!answer.ok && store.limits) byId(id).value = String(LIMITS[id]());
   });
 }
 byId("settings-open").addEventListener("click", () => {
+  setText(byId("limit-answer"), "");
   showLimits();
   byId("settings").showModal();
 });
