@@ -352,7 +352,7 @@ def fed(path, arrivals, **limits):
 
 @pytest.mark.parametrize("speed", [1.0, 10.0, math.inf])
 def test_a_replay_at_any_speed_gives_the_same_lines(tmp_path, speed):
-    path, begin_s = tmp_path / "s.pcap", time.time()
+    path, begin_s = tmp_path / "s.pcap", time.time() + 0.5
     length_s = 1.2
     arrivals = [(begin_s + length_s * k / 24.0, turn(k, begin_s, 0.05)[1]) for k in range(25)]
     _, lines = fed(path, arrivals)
