@@ -5,6 +5,7 @@
 #include "wakeline/track/partial_scan.hpp"
 
 #include <Eigen/LU>
+#include <array>
 #include <limits>
 
 #include "support/malloc_fence.hpp"
@@ -159,8 +160,7 @@ TEST(Partial, WhatMakesNoSenseIsRejectedAndNothingTakesMemory) {
   const ScanReport report = tracker.partial(scan);
   EXPECT_EQ(report.plot_track_id[2], 0) << "a value that is not finite is of none";
   EXPECT_EQ(report.rejected_plots, 1);
-  const std::vector<std::byte> now = tracker.save();
-  const std::vector<double> behind{-1.0};
+  const std::array behind{-1.0};
   const PartialScan ranges{
       .part = PositionPart::kRange, .time_s = 30.0, .values = behind, .own = {.north_m = 1900.0}};
   EXPECT_EQ(tracker.partial(ranges).rejected_plots, 1);
