@@ -434,6 +434,28 @@ def test_targets_are_not_lost_while_the_radar_is_silent(silence_s):
     assert track_id not in {one.track_id for one in session.tracker.tracks()}
 
 
+def test_targets_are_not_lost_while_own_ship_is():
+    session, began = joyride_session(), []
+    session.listeners.append(
+        lambda _, values: (
+            began.append((values["kind"], values["source"]))
+            if values.get("change") == "began"
+            else None
+        )
+    )
+    for k in range(80):
+        t = 2.5 * k
+        if not 100.0 <= t < 135.0:
+            session.feed(t, "own", json.dumps({"own": {"north_m": 0.0, "east_m": 0.0}}).encode())
+        for bearing_rad in (0.5, 2.0, 4.0):
+            plot = {"time_s": t, "range_m": 1500.0, "bearing_rad": bearing_rad}
+            session.feed(t, "radar", json.dumps(plot).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        session.feed(t, "radar", json.dumps(mark).encode())
+    assert began == [("sensor lost", "own ship's position")]
+    assert len(session.tracker.tracks()) == 3
+
+
 def test_own_ship_that_is_lost_is_where_it_was_with_its_heading():
     session = wl.live.Session({"radar": [JOYRIDE]})
     for k in range(40):

@@ -146,6 +146,17 @@ def test_born_inside_and_a_zone_about_a_track():
     assert began(alarms.update(2.0, table({7: (50.0, 50.0)})), "zone entry") == []
 
 
+def test_a_target_that_is_hidden_while_a_radar_is_silent_stays_in_its_zone():
+    alarms = Alarms(zones=[Zone(outline_m=SQUARE)], config=QUIET)
+    inside, nothing = table({1: (50.0, 50.0)}), table({})
+    (alarm,) = began(alarms.update(0.0, inside), "zone entry")
+    assert alarms.update(10.0, nothing, is_blind=True) == []
+    assert alarms.update(20.0, inside, is_blind=True) == []
+    assert alarms.active == [alarm]
+    (end,) = ended(alarms.update(30.0, nothing), "zone entry")
+    assert end.alarm_id == alarm.alarm_id
+
+
 def test_only_confirmed_tracks_count():
     alarms = Alarms(zones=[Zone(outline_m=SQUARE)], config=QUIET)
     assert alarms.update(0.0, table({1: (50.0, 50.0)}, status="tentative")) == []

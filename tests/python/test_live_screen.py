@@ -480,6 +480,11 @@ def test_a_page_says_that_its_picture_is_old(page, monkeypatch, busy_s, words):
             page.wait_for("!document.querySelector('#link').hidden")
             assert words in page.run("document.querySelector('#link').textContent")
         page.wait_for("document.querySelector('#link').hidden")
+        monkeypatch.setattr(server, "_LATE_S", -1.0)  # now every command is too late
+        page.click(*place(page, 800.0, 300.0))
+        page.press("#card .drop")
+        page.wait_for("document.querySelector('#hint').textContent.includes('too late')")
+        assert harbor.commands == []
 
 
 def test_a_limit_that_is_none_is_answered_and_put_back(page, harbor):

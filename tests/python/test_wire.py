@@ -540,6 +540,25 @@ def test_a_reader_by_the_rules_of_opencpn_has_every_target_within_10_m():
     assert sorted(lost) == [k for k in died if k in seen]
 
 
+def test_a_track_that_is_back_has_its_number_again_and_others_wait():
+    feed = wl.wire.TtmFeed(PLANE, interval_s=0.0)
+
+    def numbers(time_s, track_ids):
+        mean = [[1000.0 + 10.0 * k, 0.0, 0.0, 0.0] for k in track_ids]
+        feed.update(START + time_s, track_ids, START + time_s, np.reshape(mean, (-1, 4)))
+        return feed.numbers
+
+    before = numbers(0.0, list(range(100)))
+    assert sorted(before.values()) == list(range(100))
+    numbers(10.0, [])
+    assert numbers(11.0, [200]) == {}
+    again = wl.wire.TtmFeed(PLANE, interval_s=0.0)
+    again.restore(feed.save())
+    feed = again
+    assert numbers(12.0, list(range(50))) == {k: before[k] for k in range(50)}
+    assert numbers(71.0, [*range(50), 200])[200] in {before[k] for k in range(50, 100)}
+
+
 def test_pynmea2_reads_every_sentence_to_the_last_digit():
     pynmea2 = pytest.importorskip("pynmea2")
     for tll in (False, True):

@@ -335,7 +335,8 @@ class Alarms:
         place = None if own is None else OwnPlace(own[0], own[2], heading_rad)
         std_m = np.sqrt(_largest_variance(covariance))
         places = mean[:, 0::2]
-        for crossing in self.zones.update(time_s, track_id, places, std_m, place):
+        hidden = self._tracks.keys() - now.keys()
+        for crossing in self.zones.update(time_s, track_id, places, std_m, place, hidden):
             self._pass_crossing(crossing)
         self._pass_occupants()
         if not time_s - self._paired_s < _PAIR_S * len(track_id) ** 2:

@@ -47,6 +47,8 @@ class RadarFeed:
         Of the antenna, as configured; measured from its marks.
     unused_why : str
         Why its last sector was not used; empty if it was.
+    used_s : float
+        When its last sector was.
     """
 
     name: str
@@ -57,6 +59,7 @@ class RadarFeed:
     unused: int = 0
     excluded: int = 0
     unused_why: str = ""
+    used_s: float = -math.inf
     last_s: float = -math.inf
     _waiting: list[PlotRow] = field(default_factory=list)
     _marks: bool = False

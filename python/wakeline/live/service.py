@@ -157,9 +157,11 @@ class Service:
             if path.exists() and not path.is_file():
                 raise FileExistsError(errno.EEXIST, "not a file that can be recorded to", str(path))
             if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
+                board = self.session.watchers[0]
+                log, board.log = board.log, None  # which has what is recorded
                 for record in read_session(path, last_segment=True):
                     self._continue(path, record)
-                self.session.note = ""
+                self.session.note, board.log = "", log
             time_s = max(at_microsecond(now_s()), self.session.time_s)
             try:
                 self._recorder = self._begun_recorder(time_s)

@@ -406,7 +406,7 @@ class Session:
             feed.unused += len(sector.plots)
             self._edge_rad.pop(feed.name, None)
             return
-        feed.unused_why = ""
+        feed.unused_why, feed.used_s = "", self.time_s
         end, own = antenna
         plot_time_s, range_m, bearing_rad, covariance = columns(sector.plots)
         place_m = _moved(own, plot_time_s - sector.time_s)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import wakeline as wl
-from wakeline._checks import positive
+from wakeline._checks import at_least, positive
 
 from .alarms import AlarmConfig, AlarmEvent, AlarmLog, Alarms, Disagreement, Sensor
 from .zones import Zone, Zones, placed
@@ -76,7 +76,8 @@ class AlarmBoard:
             return _answer(alarms.delete_zone(command["zone_id"]), "no zone has that number")
         if name == "limits":
             changed = {key: float(command[key]) for key in _LIMITS if key in command}
-            positive(**changed)  # a limit of 0 would switch the alarms off
+            at_least(1.0, **{k: v for k, v in changed.items() if k != "alarm_probability"})
+            positive(**changed)  # limits of 0 would switch the alarms off
             now = alarms.limits.as_dict() | changed
             now["clear_probability"] = min(now["clear_probability"], now["alarm_probability"])
             alarms.limits = wl.DangerLimits(**now)
@@ -128,9 +129,9 @@ class AlarmWatcher(AlarmBoard):
         return [event_of(one) for one in events]
 
     def _is_blind(self, session: Any, time_s: float) -> bool:
-        """Whether radars are silent: all of them, one since a short time, or until a moment ago."""
-        heard = [feed for feed in session.feeds.values() if feed.last_s > -math.inf]
-        silent_turns = [(time_s - feed.last_s) / feed.period_s for feed in heard]
+        """Whether radars are silent or not used: all, one since a short time, or a moment ago."""
+        heard = [feed for feed in session.feeds.values() if feed.used_s > -math.inf]
+        silent_turns = [(time_s - feed.used_s) / feed.period_s for feed in heard]
         if any(_SILENT_TURNS < turns < _SOME_TURNS for turns in silent_turns) or (
             heard and min(silent_turns) > _SILENT_TURNS
         ):
@@ -166,8 +167,8 @@ def _sensors(session: Any, time_s: float) -> list[Sensor]:
     ]
     own = session.own.ages_s(time_s)
     sensors += [Sensor(f"own ship's {name}", age_s, oldest_s) for name, age_s, oldest_s in own]
-    if session.frozen and all(age_s <= oldest_s for _, age_s, oldest_s in own):
-        sensors.append(Sensor(session.frozen, float("inf"), 0.0))
+    never = {one.unused_why for one in session.feeds.values()} & {"no position", "no heading"}
+    sensors += [Sensor(f"own ship's {why[3:]}", math.inf, 0.0) for why in sorted(never)]
     return sensors
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
@@ -334,6 +334,7 @@ class Zones:
         place_m: ArrayLike,
         std_m: ArrayLike,
         own: OwnPlace | None = None,
+        hidden: Collection[int] = (),
     ) -> list[Crossing]:
         """Take all confirmed tracks at a time.
 
@@ -347,6 +348,8 @@ class Zones:
             Standard deviation of the position in its worst direction.
         own : OwnPlace, optional
             Without it sectors keep the state that they had.
+        hidden : collection of int
+            Tracks that are not among these and not lost: they are where they were.
 
         Returns
         -------
@@ -359,7 +362,7 @@ class Zones:
         for one in self._watched.values():
             if one.zone.kind == "guard":
                 depth_m = one.zone.depth_m(place_m, own)
-                crossings += _cross(one, time_s, track_id, depth_m, std_m)
+                crossings += _cross(one, time_s, track_id, depth_m, std_m, hidden)
         return crossings
 
     def occupants(self, time_s: float) -> list[tuple[Zone, int, float]]:
@@ -377,6 +380,7 @@ def _cross(
     track_id: NDArray[np.int64],
     depth_m: NDArray[np.float64],
     std_m: NDArray[np.float64],
+    hidden: Collection[int],
 ) -> list[Crossing]:
     crossings = []
     leaves_m = -np.maximum(one.zone.hysteresis_m, _LEAVING_STDS * std_m)
@@ -394,7 +398,7 @@ def _cross(
             )
         if not math.isnan(depth):  # a sector has no depth while own ship is unknown
             one.seen.add(number)
-    there = set(track_id.tolist())
+    there = {*track_id.tolist(), *hidden}
     one.seen &= there
     for number in [number for number in one.inside if number not in there]:
         stay = one.inside.pop(number)

@@ -47,25 +47,26 @@ struct ReportedTrack {
 };
 
 /// Numbers from 0 on for tracks. One that is given back rests for `hold_off_s` before it is given
-/// again; the next number is given first, so that each rests as long as it can.
+/// to another track; the next number is given first, so that each rests as long as it can.
 class NumberPool {
  public:
   NumberPool(int count, double hold_off_s)
-      : free_at_s_(static_cast<std::size_t>(count), kFree), hold_off_s_(hold_off_s) {
+      : free_at_s_(static_cast<std::size_t>(count), kFree),
+        track_of_(free_at_s_.size(), kNoTrack),
+        hold_off_s_(hold_off_s) {
     require_not_negative("hold_off_s", hold_off_s);
   }
 
   [[nodiscard]] int count() const noexcept { return static_cast<int>(free_at_s_.size()); }
 
-  /// A number, or -1 when all are taken or rest.
-  int take(double time_s) noexcept {
+  /// A number for a track: the one that it had, if that rests; -1 when all are taken or rest.
+  int take(std::int64_t track_id, double time_s) noexcept {
+    const auto had = std::find(track_of_.begin(), track_of_.end(), track_id) - track_of_.begin();
+    if (had < std::ssize(track_of_)) return given(static_cast<int>(had), track_id);
     const auto count = static_cast<int>(free_at_s_.size());
     for (int tried = 0; tried < count; ++tried) {
       next_ = next_ + 1 < count ? next_ + 1 : 0;
-      double& free_at_s = free_at_s_[static_cast<std::size_t>(next_)];
-      if (free_at_s > time_s) continue;
-      free_at_s = kTaken;
-      return next_;
+      if (free_at_s_[static_cast<std::size_t>(next_)] <= time_s) return given(next_, track_id);
     }
     return -1;
   }
@@ -78,14 +79,26 @@ class NumberPool {
     const std::size_t count = free_at_s_.size();
     fields(free_at_s_, count);
     fields(next_);
-    if (free_at_s_.size() != count || next_ < 0 || next_ >= static_cast<int>(count)) fields.fail();
+    fields(track_of_, count);
+    if (free_at_s_.size() != count || track_of_.size() != count || next_ < 0 ||
+        next_ >= static_cast<int>(count))
+      fields.fail();
   }
 
  private:
   static constexpr double kFree = -std::numeric_limits<double>::infinity();
   static constexpr double kTaken = std::numeric_limits<double>::infinity();
 
+  static constexpr std::int64_t kNoTrack = std::numeric_limits<std::int64_t>::min();
+
+  int given(int number, std::int64_t track_id) noexcept {
+    free_at_s_[static_cast<std::size_t>(number)] = kTaken;
+    track_of_[static_cast<std::size_t>(number)] = track_id;
+    return number;
+  }
+
   std::vector<double> free_at_s_;
+  std::vector<std::int64_t> track_of_;  ///< that had a number last
   double hold_off_s_;
   int next_ = 0;
 };
@@ -199,7 +212,7 @@ class ReportSchedule {
   }
 
   Sent* add(std::int64_t id, double time_s) noexcept {
-    const int number = pool_.take(time_s);
+    const int number = pool_.take(id, time_s);
     if (number < 0) {
       ++waiting_;
       return nullptr;

@@ -54,6 +54,7 @@ _MOST_CLIENTS = 32
 _MOST_WAITING = 1 << 18  # octets buffered for a client before a send waits
 _PICTURE_S = 0.25
 _LONGEST_PICTURE_S = 1.5  # between pictures of a busy session
+_LATE_S, _VERSIONS_KEPT = 8.0, 200  # of commands after a picture; pictures
 _BUSY_S = 2.5  # without a picture, after which a page hears that there will be one
 _ECHO_S = 0.04
 _ECHO_OCTETS_PER_S = 1.3e6
@@ -350,6 +351,8 @@ class WebApp:
         }
         await stream.send_str(json.dumps(hello))
 
+        sent_s: dict[int, float] = {}
+
         async def send() -> None:
             version = 0
             await self.take_picture()
@@ -358,6 +361,9 @@ class WebApp:
                 text, version = self._scene.message(version)
                 self.octets_sent += len(text)
                 await stream.send_str(text)
+                sent_s[version] = time.monotonic()
+                if len(sent_s) > _VERSIONS_KEPT:
+                    del sent_s[next(iter(sent_s))]
                 while not changed.is_set():
                     try:
                         await asyncio.wait_for(changed.wait(), _BUSY_S)
@@ -365,14 +371,15 @@ class WebApp:
                         await stream.send_json({"type": "busy"})
 
         async def receive(text: str) -> None:
-            answer, number = await self._answer(text)
+            answer, number = await self._answer(text, sent_s)
             await stream.send_json({"type": "answer", "number": number, **answer})
             await asyncio.sleep(_COMMAND_S)
 
         await self.run_stream(stream, send, receive)
         return stream
 
-    async def _answer(self, text: str) -> tuple[dict[str, Any], Any]:
+    async def _answer(self, text: str, sent_s: Mapping[int, float]) -> tuple[dict[str, Any], Any]:
+        """Of a command that came too late after the picture that it is about, an error."""
         try:
             command = json.loads(text)
         except (ValueError, RecursionError):
@@ -382,6 +389,9 @@ class WebApp:
         number = command.pop("number", None)
         if not isinstance(number, int):
             number = None
+        seen = command.pop("version", None)
+        if isinstance(seen, int) and time.monotonic() - sent_s.get(seen, -math.inf) > _LATE_S:
+            return {"ok": False, "error": "the command came too late, and is not done"}, number
         return await self.command(command), number
 
     async def _echoes(self, request: web.Request) -> web.StreamResponse:

@@ -70,6 +70,7 @@ class Stream {
 export class Link {
   constructor({ onHello, onPicture, onBusy, onEchoes, onGap, onState }) {
     this.number = 0;
+    this.version = 0; // of the last picture, which a command is about
     this.waiting = new Map();
     this.onEchoes = onEchoes;
     this.onGap = onGap;
@@ -78,8 +79,10 @@ export class Link {
       (data) => {
         const message = JSON.parse(data);
         if (message.type === "hello") onHello(message);
-        else if (message.type === "picture") onPicture(message);
-        else if (message.type === "busy") onBusy();
+        else if (message.type === "picture") {
+          this.version = message.version;
+          onPicture(message);
+        } else if (message.type === "busy") onBusy();
         else if (message.type === "answer") this.answered(message);
       },
       (open) => {
@@ -113,7 +116,8 @@ export class Link {
     this.number += 1;
     const number = this.number;
     return new Promise((done) => {
-      if (!this.pictures.send(JSON.stringify({ ...command, number }))) {
+      const open = this.pictures.alive && this.pictures.send(JSON.stringify({ ...command, number, version: this.version }));
+      if (!open) {
         done({ ok: false, error: "there is no connection" });
         return;
       }

@@ -4,7 +4,7 @@ import { Link } from "./link.js";
 import { Overlay } from "./overlay.js";
 import { PALETTES } from "./palette.js";
 import { Panel, element, setText } from "./panel.js";
-import { Store } from "./store.js";
+import { Store, acquiring } from "./store.js";
 import { HINTS, Tools } from "./tools.js";
 import { NAUTICAL_MILE_M, RANGES_M, angle, clock, degreesAt, distance, latitude, longitude, minutes, percent, rangeName, shortAngle, speed } from "./units.js";
 import { View } from "./view.js";
@@ -97,7 +97,10 @@ const link = new Link({
       view.moored = null;
     }
     if (!fitted) fit();
-    if (selected !== null && !store.tracks.has(selected)) select(null);
+    if (selected !== null && !store.tracks.has(selected)) {
+      if (acquiring(store.lost.get(selected))) say(`Target ${selected} is given up: there is no echo.`, true);
+      select(null);
+    }
     warn(store.note ?? "");
     fresh = true;
   },
@@ -232,10 +235,10 @@ function fillCard() {
   const rows = [
     ["Range, bearing", `${distance(Math.hypot(north, east), settings.units)}, ${angle(Math.atan2(east, north))}`],
   ];
-  const acquiring = track.status === "held" || track.status === "tentative";
-  if (!acquiring) rows.push(["Speed, course", `${speed(Math.hypot(track.vnorth, track.veast), settings.units)}, ${angle(Math.atan2(track.veast, track.vnorth))}`]);
-  if (track.mode && !acquiring) rows.push(["Motion", track.mode]);
-  const danger = !acquiring && store.encounters.find((one) => one.first === 0 && one.second === track.id);
+  const unknown = acquiring(track);
+  if (!unknown) rows.push(["Speed, course", `${speed(Math.hypot(track.vnorth, track.veast), settings.units)}, ${angle(Math.atan2(track.veast, track.vnorth))}`]);
+  if (track.mode && !unknown) rows.push(["Motion", track.mode]);
+  const danger = !unknown && store.encounters.find((one) => one.first === 0 && one.second === track.id);
   if (danger || (track.cpa !== null && track.cpa_time !== null)) {
     const [cpa_m, ahead_s, share] = danger ? [danger.cpa_m, danger.tcpa_s, danger.probability] : [track.cpa, track.cpa_time - time_s, track.probability];
     rows.push(["CPA to own ship", ahead_s >= 0 ? `${distance(cpa_m, settings.units)} in ${minutes(ahead_s)}` : "past"]);
@@ -445,6 +448,11 @@ function showLimits() {
   for (const [id, limit] of Object.entries(LIMITS)) byId(id).value = String(limit());
 }
 for (const id of Object.keys(LIMITS)) {
+  byId(id).addEventListener("keydown", (event) => {
+    if (event.key !== "Enter") return;
+    event.preventDefault(); // it would close the dialog
+    byId(id).blur();
+  });
   byId(id).addEventListener("change", async () => {
     const [cpa_limit_m, tcpa_limit_s] = [Number(byId("cpa-limit").value) * limitUnit(), Number(byId("tcpa-limit").value) * 60];
     const answer = await command({ command: "limits", cpa_limit_m, tcpa_limit_s });

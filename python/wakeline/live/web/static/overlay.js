@@ -1,5 +1,6 @@
 // Symbols over the echoes: those of IMO SN.1/Circ.243 as far as they apply, rings, zones, labels.
 import { placeLabels } from "./labels.js";
+import { acquiring } from "./store.js";
 import { TURN, distance, minutes, percent, rangeName, shortAngle, angle, speed } from "./units.js";
 
 const FONT = '12px system-ui, "Segoe UI", Roboto, sans-serif';
@@ -297,8 +298,7 @@ export class Overlay {
         c.arc(x, y, DANGER_PX, 0, TURN);
         c.stroke();
       } else {
-        const acquiring = target.status === "held" || target.status === "tentative";
-        this.copy(this.circle(palette.target, acquiring), x - CIRCLE_PX, y - CIRCLE_PX);
+        this.copy(this.circle(palette.target, acquiring(target)), x - CIRCLE_PX, y - CIRCLE_PX);
       }
       if (target.identity) this.triangle(x, y, target, this.colorOf(target), 4);
     }

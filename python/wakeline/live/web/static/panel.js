@@ -1,4 +1,5 @@
 // The panel beside the picture: alarms, targets by danger, zones, sources. Names are texts, never markup.
+import { acquiring } from "./store.js";
 import { TURN, distance, shortAngle, minutes, percent, speed, clock } from "./units.js";
 
 const FAR_DEG = 0.5; // of the plane's north from true north
@@ -113,19 +114,19 @@ export class Panel {
       row.dataset.id = track.id;
       const past = one.ahead_s !== null && one.ahead_s < 0;
       const other = one.danger && one.danger.first !== 0 ? (one.danger.first === track.id ? one.danger.second : one.danger.first) : null;
-      const acquiring = track.status === "held" || track.status === "tentative";
+      const unknown = acquiring(track);
       const figures = [
         `${store.nameOf(track) || track.id}${track.status === "coasting" ? " ·" : ""}`,
         bare(distance(one.range_m, settings.units)),
         shortAngle(one.bearing),
-        acquiring ? "" : bare(speed(Math.hypot(track.vnorth, track.veast), settings.units)),
-        acquiring ? "" : shortAngle(Math.atan2(track.veast, track.vnorth)),
+        unknown ? "" : bare(speed(Math.hypot(track.vnorth, track.veast), settings.units)),
+        unknown ? "" : shortAngle(Math.atan2(track.veast, track.vnorth)),
         past ? "past" : bare(distance(one.cpa_m, settings.units)),
         past ? "" : minutes(one.ahead_s),
         past ? "" : percent(one.probability),
       ];
       figures.forEach((text, c) => setText(row.children[c], text));
-      row.title = [store.nameOf(track), acquiring ? "being acquired" : track.mode, other ? `closest approach to target ${other}` : "", track.status === "coasting" ? "without an echo at present" : ""].filter(Boolean).join(", ");
+      row.title = [store.nameOf(track), unknown ? "being acquired" : track.mode, other ? `closest approach to target ${other}` : "", track.status === "coasting" ? "without an echo at present" : ""].filter(Boolean).join(", ");
       row.className = [one.danger && !past ? "danger" : "", track.id === selected ? "selected" : "", track.status].filter(Boolean).join(" ");
       if (body.children[k] !== row) body.insertBefore(row, body.children[k] ?? null);
     });

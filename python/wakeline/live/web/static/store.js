@@ -6,6 +6,9 @@ const LOST_S = 30;
 const MOST_AHEAD_S = 4;
 const MOST_AGE_S = 30;
 
+/** Whether a target has no figures yet. */
+export const acquiring = (track) => track?.status === "held" || track?.status === "tentative";
+
 export class Store {
   constructor() {
     this.tracks = new Map();
