@@ -26,6 +26,7 @@ class Stream {
       this.failures = 0;
     };
     socket.onmessage = (event) => {
+      if (this.socket !== socket) return;
       this.heard_ms = performance.now();
       this.state(true);
       this.onMessage(event.data);
