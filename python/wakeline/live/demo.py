@@ -13,6 +13,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import reduce
 from operator import xor
 from typing import NamedTuple
@@ -25,6 +26,7 @@ from wakeline._engine.video import Cat240Encoder
 from wakeline._units import KNOT_MPS
 from wakeline.scenario import RadarVideoSimulator, Truth, VideoTarget
 from wakeline.scenario.video import SeaClutter
+from wakeline.tracking import Settings
 
 from .config import InputConfig, LiveConfig, OutputConfig, OwnConfig, RadarConfig, SessionConfig
 
@@ -49,7 +51,10 @@ def demo_config(tracks: str, ttm_port: int = TTM_PORT) -> LiveConfig:
     joyride = {
         key: value for key, value in recording.load("joyride").radar.items() if value is not None
     } | {"max_range_m": 6000.0}
+    default = Settings.default()
+    tracker = dict(default.tracker) | {"vessel_length_m": 120.0}  # of the longest, with two echoes
     return LiveConfig(
+        settings=replace(default, tracker=tracker),
         inputs=(
             InputConfig("udp://127.0.0.1:0?name=boat", format="nmea"),
             InputConfig("udp://127.0.0.1:0?name=boat radar", format="json", radar="boat"),
