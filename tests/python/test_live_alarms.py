@@ -347,6 +347,18 @@ def test_a_lost_target_alarms_unless_it_was_dropped_or_hardly_there():
     assert ended(alarms.update(80.0, table({})), "lost target")
 
 
+def test_a_target_that_vanished_in_an_outage_and_was_dropped_alarms_when_it_is_back_and_lost():
+    alarms = Alarms(config=AlarmConfig(pairs=False, established_s=10.0))
+    there, nothing = table({1: (0.0, 0.0)}), table({})
+    alarms.update(0.0, there)
+    alarms.update(20.0, nothing, is_blind=True)
+    alarms.forget(1)
+    assert alarms.update(60.0, nothing) == []
+    alarms.update(70.0, there)
+    (alarm,) = began(alarms.update(90.0, nothing), "lost target")
+    assert alarm.tracks == (1,)
+
+
 def test_a_new_target_alarms_when_wanted():
     alarms = Alarms(config=AlarmConfig(new_target=True))
     assert began(alarms.update(0.0, table({4: (0.0, 0.0)})), "new target")

@@ -63,9 +63,9 @@ def settings_for(turn: RadarVideo, kind: Kind) -> tuple[dict[str, float], int]:
         settings = _settings(kind, noise, above_db)
         trial = wl.PlotExtractor(**settings)
         plots = len(trial.process(turn)) + len(trial.finish())
-        if plots > (fewest if chosen is None else _STEEP * fewest):
-            if chosen is not None:
-                break
+        if chosen is not None and plots > _STEEP * fewest:
+            break
+        if plots > fewest:
             continue
         chosen, fewest = (settings, above_db), plots
         if plots <= _FEW_PLOTS * part:

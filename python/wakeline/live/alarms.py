@@ -355,9 +355,7 @@ class Alarms:
         changes, self._changes = self._changes, []
         return changes
 
-    def _pass_targets(
-        self, now: dict[int, str], events: Iterable[Any], is_blind: bool = False
-    ) -> None:
+    def _pass_targets(self, now: dict[int, str], events: Iterable[Any], is_blind: bool) -> None:
         reasons = {e.track_id: e.reason for e in events if getattr(e, "kind", "") == "lost"}
         gone = [track_id for track_id in self._tracks if track_id not in now]
         for track_id in gone:
@@ -366,13 +364,12 @@ class Alarms:
                 was.gone_s = min(was.gone_s, self.time_s)
                 continue
             del self._tracks[track_id]
-            if self.time_s - was.gone_s > _OUTAGE_S:
-                continue  # for the silence, which was an alarm
+            by_outage = self.time_s - was.gone_s > _OUTAGE_S  # which was an alarm
             dropped = track_id in self._dropped
             self._dropped.discard(track_id)
             established = self.time_s - was.since_s >= self.config.established_s
             reason = reasons.get(track_id, "")
-            counts = reason in _COUNTED_AS_LOST and established and not dropped
+            counts = reason in _COUNTED_AS_LOST and established and not dropped and not by_outage
             if self.config.lost_target and counts:
                 self._happen("lost target", f"{_called(track_id, was.name)} lost", (track_id,))
         for track_id, name in now.items():

@@ -414,7 +414,8 @@ class Session:
             range_m, bearing_rad = self._seen_from(
                 place_m, radar, plot_time_s, range_m, bearing_rad, from_bow
             )
-        kept = self._outside(feed, sector.time_s, place_m, range_m, bearing_rad)
+        index = list(self.radars).index(feed.name)
+        kept = self._outside(index, sector.time_s, place_m, range_m, bearing_rad)
         if not kept.all():
             feed.excluded += int(np.sum(~kept))
             plot_time_s, range_m, bearing_rad = (
@@ -431,7 +432,6 @@ class Session:
                 from_rad, to_rad = 0.0, 2.0 * math.pi
             elif not 0.0 <= (to_rad - from_rad) % (2 * math.pi) <= 2.0 * width_rad + 0.1:
                 from_rad = sector.from_rad + end.heading_rad
-        index = list(self.radars).index(feed.name)
         self.tracker.note_lateness(sector.time_s, self.time_s)
         events = self.tracker.sector(
             index,
@@ -452,16 +452,18 @@ class Session:
 
     def _outside(
         self,
-        feed: RadarFeed,
+        index: int,
         time_s: float,
         place_m: np.ndarray,
         range_m: np.ndarray,
         bearing_rad: np.ndarray,
     ) -> np.ndarray:
         """Which plots (n,) from places (n, 2) are used: :meth:`Zones.kept`."""
+        if not len(range_m):
+            return np.ones(0, dtype=bool)
         direction = np.column_stack([np.cos(bearing_rad), np.sin(bearing_rad)])
         plots_m = place_m + range_m[:, np.newaxis] * direction
-        radar, shown = self.tracker.radars[list(self.feeds).index(feed.name)], self.shown
+        radar, shown = self.tracker.radars[index], self.shown
 
         def is_tracked(which: np.ndarray) -> np.ndarray:
             plots = radar, range_m[which], plots_m[which]
@@ -531,6 +533,7 @@ class Session:
         self._remember(table, rows)
         for track_id in gone:
             self._history.pop(track_id, None)
+            self._acquired.pop(track_id, None)
         if len(rows) or gone:
             lines = cache(partial(self.lines, table, rows, radar))
             for output in self.outputs.values():
@@ -674,10 +677,8 @@ class Session:
         }
         for watcher in self.watchers:
             picture |= watcher.picture(self)
-        hits_of = {one["track_id"]: one["hits"] for one in tracks}
-        self._acquired = {k: v for k, v in self._acquired.items() if hits_of.get(k, v) < v}
         for values in tracks:
-            if values["track_id"] in self._acquired:
+            if values["hits"] < self._acquired.get(values["track_id"], 0):
                 values["status"] = "tentative"
                 values.pop("cpa", None)
             values["history"] = list(self._history.get(values["track_id"], ()))
@@ -897,9 +898,10 @@ class Session:
             return _answer(False, "no radar has given data yet")
         known = self.tracker.table().track_id.tolist()
         track_id = self.tracker.designate(self.tracker.time_s, *place, std_m)
-        if track_id not in known:
-            hits_of = {one.track_id: one.hits for one in self.tracker.tracks()}
-            self._acquired[track_id] = hits_of.get(track_id, 0) + _HITS_OF_ACQUIRED
+        if track_id > 0 and track_id not in known:
+            table = self.tracker.table()
+            hits = int(table.hits[table.track_id == track_id].sum())
+            self._acquired[track_id] = hits + _HITS_OF_ACQUIRED
         return _answer(track_id > 0, "there is no room for another track") | {"track_id": track_id}
 
     # ------------------------------------------------------------------ places

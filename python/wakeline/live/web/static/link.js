@@ -11,7 +11,6 @@ class Stream {
     this.onState = onState;
     this.failures = 0;
     this.wanted = true;
-    this.heard_ms = 0;
     this.alive = null; // unknown
     this.open();
   }

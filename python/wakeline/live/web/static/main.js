@@ -475,6 +475,7 @@ byId("center").addEventListener("click", () => {
 // Replay --------------------------------------------------------------------------------------------
 
 let scrubbing = false;
+let seeking = false;
 function showReplay() {
   const { replay } = store;
   byId("replay").hidden = !replay;
@@ -484,8 +485,7 @@ function showReplay() {
     [scrub.min, scrub.max] = [replay.start_s, replay.end_s];
     scrub.value = String(store.now(performance.now()));
   }
-  const seeking = byId("replay").classList.contains("seeking") ? "Seeking " : "";
-  setText(byId("clock"), `${seeking}${clock(Number(scrub.value))} (${minutes(Number(scrub.value) - replay.start_s)} of ${minutes(replay.end_s - replay.start_s)})`);
+  setText(byId("clock"), `${seeking ? "Seeking " : ""}${clock(Number(scrub.value))} (${minutes(Number(scrub.value) - replay.start_s)} of ${minutes(replay.end_s - replay.start_s)})`);
   setText(byId("play"), replay.paused ? "▶" : "❚❚");
   byId("play").setAttribute("aria-label", replay.paused ? "Play" : "Pause");
   if (document.activeElement !== byId("speed")) byId("speed").value = String(replay.speed);
@@ -497,10 +497,9 @@ byId("scrub").addEventListener("input", () => {
   scrubbing = true;
 });
 byId("scrub").addEventListener("change", async () => {
-  byId("replay").classList.add("seeking");
+  seeking = true;
   await command({ command: "replay", time_s: Number(byId("scrub").value) });
-  byId("replay").classList.remove("seeking");
-  scrubbing = false;
+  seeking = scrubbing = false;
 });
 byId("replay").addEventListener("submit", (event) => event.preventDefault());
 
