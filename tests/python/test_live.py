@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 import wakeline as wl
 from test_cli_navigate import sentence as sentence_of
 from wakeline._engine.video import Cat240Encoder
+from wakeline.live.ais import AisPicture
 from wakeline.live.asterix_feed import BlockAssembly
 from wakeline.live.config import config_of
 from wakeline.live.lines import LineAssembly
@@ -735,6 +736,91 @@ def test_bytes_cut_at_every_offset_give_the_same_messages():
     for cut in range(1, len(octets)):
         assert messages([octets[:cut], octets[cut:]])[0] == whole
     assert messages([octets[k : k + 1] for k in range(len(octets))])[0] == whole
+
+
+def ais_fleet(rng, delay_s, wrong_s=0.0, lying=(), seconds=400):
+    """Positions of ten vessels every tenth second: times of them and of reception, messages.
+
+    Received so much later, by a clock that is wrong; of the lying ones the second is any.
+    """
+    pyais = pytest.importorskip("pyais")
+    found = []
+    for k in range(10):
+        start, speed, course = (
+            rng.uniform(-0.05, 0.05, 2),
+            rng.uniform(3.0, 10.0),
+            rng.uniform(0.0, 6.2),
+        )
+        for time_s in range(int(rng.integers(10)), seconds, 10):
+            way_deg = speed * time_s / 1852.0 / 60.0
+            fields = {
+                "type": int(rng.choice([1, 3, 18])),
+                "mmsi": 211000000 + k,
+                "lat": start[0] + way_deg * np.cos(course),
+                "lon": start[1] + way_deg * np.sin(course),
+                "speed": speed * 3600.0 / 1852.0,
+                "course": np.degrees(course),
+                "second": int(rng.integers(60)) if k in lying else time_s % 60,
+            }
+            found.append((time_s + wrong_s, delay_s(rng, time_s) + wrong_s + time_s, fields))
+    found.sort(key=lambda one: one[1])
+    return [(a, b, pyais.decode(*pyais.encode_dict(fields))) for a, b, fields in found]
+
+
+def ais_times(fleet):
+    """How far times taken are from the true ones, and those of reception; after three of each."""
+    picture, errors = AisPicture(), []
+    for time_s, received_s, message in fleet:
+        found = picture.add(received_s, message)
+        if found is not None and found[1] and found[0].messages > 3:
+            errors.append((found[0].mmsi, found[0].time_s - time_s, received_s - time_s))
+    mmsi, taken, received = np.array(errors).T
+    return mmsi, taken, received
+
+
+def soon(rng, time_s):
+    return 0.1 + rng.exponential(1.0)
+
+
+@settings(max_examples=8, deadline=None)
+@given(wrong_s=st.floats(-40.0, 40.0), seed=st.integers(0, 99))
+def test_positions_of_ais_are_of_the_second_that_they_state(wrong_s, seed):
+    fleet = ais_fleet(np.random.default_rng(seed), soon, wrong_s)
+    _, taken, received = ais_times(fleet)
+    assert np.std(received) > 0.8
+    assert np.std(taken) < 0.4
+    assert np.abs(taken - 0.1).mean() < 0.4  # as soon as the soonest
+
+
+def test_positions_of_ais_that_have_waited_are_not_of_their_reception():
+    def held_up(rng, time_s):
+        return max(soon(rng, time_s), (200.0 - time_s) * (150.0 < time_s < 200.0))
+
+    _, taken, received = ais_times(ais_fleet(np.random.default_rng(1), held_up))
+    assert received.max() > 40.0
+    assert np.abs(taken).max() < 6.0
+    _, taken, received = ais_times(
+        ais_fleet(np.random.default_rng(2), lambda rng, _: rng.uniform(2.0, 25.0), seconds=900)
+    )
+    assert np.sqrt(np.mean((taken - 2.0) ** 2)) < 0.4 * np.std(received)
+
+
+def test_a_wrong_second_of_ais_does_not_move_a_vessel():
+    lying = (2, 5, 7)
+    mmsi, taken, _ = ais_times(ais_fleet(np.random.default_rng(3), soon, lying=lying))
+    lies = np.isin(mmsi - 211000000, lying)
+    assert np.sqrt(np.mean(taken[lies] ** 2)) < 2.5
+    assert np.abs(taken[~lies]).mean() < 0.5
+
+
+def test_a_position_of_ais_that_comes_by_two_ways_is_one():
+    fleet = ais_fleet(np.random.default_rng(4), soon)
+    later = sorted(
+        [(b + 2.5 * way, m) for _, b, m in fleet for way in (0, 1)], key=lambda one: one[0]
+    )
+    picture = AisPicture()
+    taken = [picture.add(received_s, message)[1] for received_s, message in later]
+    assert sum(taken) < 1.15 * len(fleet)
 
 
 def test_interleaved_parts_and_tag_blocks_give_the_same_messages():

@@ -25,6 +25,7 @@ from wakeline.live.config import (
     InputConfig,
     LiveConfig,
     OutputConfig,
+    OwnConfig,
     RadarConfig,
     SessionConfig,
 )
@@ -33,6 +34,7 @@ from wakeline.live.record import Recorder, at_microsecond, read_session, segment
 from wakeline.live.service import Service, feed_record, replay
 from wakeline.live.web import WebServer
 from wakeline.recording import RecordingError
+from wakeline.tracking.settings import Settings
 
 SMALL = {
     "radar": [{"name": "A", "position_deg": [54.0, 10.0], "period_s": 2.0}],
@@ -604,6 +606,32 @@ def test_a_session_is_replayed_with_the_settings_of_a_file(tmp_path, capsys):
     assert "0 tracks at the end" in capsys.readouterr().out
     main(["live", "--replay", str(path), "--speed", "max", "--out", f"file:{lines}"])
     assert "2 tracks at the end" in capsys.readouterr().out
+
+
+def test_a_file_changes_only_what_it_names_of_a_session(tmp_path, capsys):
+    path, settings = tmp_path / "s.pcap", tmp_path / "live.toml"
+    recorded = LiveConfig(
+        radars=(replace(ASHORE, settings={"range_std_m": 7.0}),),
+        own=OwnConfig(place_deg=(54.0, 10.0)),
+        session=SessionConfig(origin_deg=(54.0, 10.0)),
+        settings=Settings.of({"tracker": {"vessel_length_m": 90.0, "confirm_hits": 4}}, "here"),
+        guard_zones=({"name": "fairway", "near_m": 100.0, "far_m": 900.0},),
+    )
+    service = Service(wl.live.Session(recorded), path)
+    service._begin()
+    service.close()
+    for text, wanted in (
+        ("", {}),
+        ("[tracker]\nconfirm_hits = 5\n", {("tracker", "confirm_hits"): 5}),
+        ("[session]\nwindow_s = 20.0\n", {("session", "window_s"): 20.0}),
+    ):
+        settings.write_text(text)
+        main(["live", str(settings), "--replay", str(path), "--print-config"])
+        settings.write_text(capsys.readouterr().out)
+        found, expected = wl.live.read_config(settings).as_document(), recorded.as_document()
+        for (section, key), value in wanted.items():
+            expected[section][key] = value
+        assert found == expected
 
 
 def test_another_file_is_no_session(tmp_path):

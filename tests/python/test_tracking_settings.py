@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import subprocess
 import sys
 
@@ -32,7 +33,21 @@ def test_explanations_are_those_of_the_parameters():
     text = Settings.default().toml()
     for kind in (wl.Radar, wl.TrackerConfig, wl.VesselModels, DangerLimits):
         for field in kind.fields():
-            assert field.sentence in text or field.name == "period_s"
+            sentence = field.sentence.replace("_rad`", "_deg`")  # as in files
+            assert sentence in text or field.name == "period_s"
+
+
+def test_limits_of_angles_are_stated_in_degrees():
+    stated = re.findall(r"degrees; \S+ to (\S+)\]\n(\w+_deg) =", Settings.default().toml())
+    assert len(stated) == 4
+    for most, key in stated:
+        for factor, fits in ((0.99, True), (1.01, False)):
+            values = {"radar": {key: factor * float(most)}}
+            if fits:
+                Settings.of(values, "here")
+            else:
+                with pytest.raises(SettingsError, match=f"{key} = .*: {key} must be"):
+                    Settings.of(values, "here")
 
 
 def test_the_defaults_are_those_of_the_engine():

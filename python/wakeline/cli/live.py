@@ -30,7 +30,7 @@ from wakeline.live.playback import SPEEDS, SessionPlayback
 from wakeline.live.record import read_session
 from wakeline.live.service import Service, feed_record, note_outputs, replay
 from wakeline.live.session import Session
-from wakeline.tracking.settings import Settings, SettingsError, read_settings
+from wakeline.tracking.settings import Settings, SettingsError, read_settings, read_toml
 
 from . import view
 from .options import place
@@ -137,7 +137,7 @@ def _config(arguments: argparse.Namespace) -> LiveConfig:
         first = next(read_session(arguments.replay), None)
         if first is None or "settings" not in (first.values or {}):
             raise SettingsError(f"{arguments.replay}: the session has no settings")
-        config = _of_session(arguments, config_of(first.values["settings"], arguments.replay))
+        config = _of_session(arguments, first.values["settings"])
     else:
         config = read_config(arguments.config) if arguments.config else LiveConfig()
     inputs = tuple(InputConfig(url) for url in arguments.inputs_)
@@ -156,17 +156,22 @@ def _config(arguments: argparse.Namespace) -> LiveConfig:
     return config
 
 
-def _of_session(arguments: argparse.Namespace, recorded: LiveConfig) -> LiveConfig:
-    """The settings of a session, or of the file in their place; inputs are those recorded."""
+def _of_session(arguments: argparse.Namespace, recorded: dict[str, Any]) -> LiveConfig:
+    """The settings of a session, changed by those in the file; inputs are those recorded."""
     if not arguments.config:
-        return replace(recorded, outputs=())
-    given, usual = read_config(arguments.config), LiveConfig()
-    return replace(
-        given,
-        inputs=recorded.inputs,
-        radars=recorded.radars if given.radars == usual.radars else given.radars,
-        own=recorded.own if given.own == usual.own else given.own,
-    )
+        return replace(config_of(recorded, arguments.replay), outputs=())
+    document = read_toml(arguments.config)
+    given, usual = config_of(document, arguments.config), LiveConfig()
+    changed = recorded | {"output": document.pop("output", [])}
+    document.pop("input", None)
+    if given.radars == usual.radars:
+        common = document.pop("radar", {})
+        if isinstance(common, dict):
+            changed["radar"] = [radar | common for radar in recorded["radar"]]
+    for section, values in document.items():
+        is_section = isinstance(values, dict)
+        changed[section] = recorded.get(section, {}) | values if is_section else values
+    return config_of(changed, arguments.config)
 
 
 def _record(arguments: argparse.Namespace, config: LiveConfig) -> Path | None:

@@ -51,9 +51,12 @@ def run(arguments: argparse.Namespace) -> None:
     outputs.make_folder(arguments.out)
     planned = scenario.cloud(_PLANNED, _SEED)
     judged = scenario.cloud(_JUDGED, _SEED + 1)
-    plan = ws.optimized_plan(
-        scenario.units, planned, scenario.law, scenario.patterns, _SEED, progress=True
-    )
+    try:
+        plan = ws.optimized_plan(
+            scenario.units, planned, scenario.law, scenario.patterns, _SEED, progress=True
+        )
+    except ValueError as error:  # a unit cannot reach the datum
+        raise ValueError(f"{arguments.scenario}: {error}") from None
     naive = ws.naive_plan(scenario.units, judged, scenario.law)
     bound = ws.greedy_bound(plan, judged)
     pos = {"plan": plan.pos(judged), "naive": naive.pos(judged), "bound": bound.pos(judged)}

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 import re
+from collections import deque
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
-from wakeline._units import KNOT_MPS
+import numpy as np
+
+from wakeline._units import KNOT_MPS, NAUTICAL_MILE_M
 
 from .problems import Problems
 
@@ -19,6 +22,8 @@ FORGET_S = 900.0
 _GROUP = re.compile(rb"\\(?:[^\\*]*,)?g:(\d+)-(\d+)-(\d+)")
 _POSITION_TYPES = (1, 2, 3, 4, 18, 19, 27)
 _CLASS_B = (18, 19, 24)
+_OFTEN = 2  # so many stated times in a row must fit how far a vessel has moved
+_SLOW_MPS = 2.0  # too slow to tell times by how far a vessel has moved
 
 
 class _Open(NamedTuple):
@@ -74,6 +79,55 @@ class AisAssembly:
         return None
 
 
+class AisClock:
+    """When positions of AIS were measured, by the second of the minute that they state.
+
+    They come up to seconds later, where they have waited up to a minute, and the receiver's own
+    clock may be wrong by seconds. How long before its reception a position was, as that clock has
+    it, is known but for what is common to all. That is found as the least after which they come:
+    the one that is likeliest where the number of those that take longer falls by e in 20 s.
+    """
+
+    _MINUTE_S = 60.0
+    _STEP_S = 0.25
+    _FALLS_S = 20.0
+    _MEMORY = 200  # messages
+    _FEWEST = 10
+    _APART_S = 0.05  # of those that come together all but the first may have waited
+    _CLEAR = 0.42  # mean weight of a message; of seconds at random 0.32
+
+    def __init__(self) -> None:
+        steps = round(self._MINUTE_S / self._STEP_S)
+        after = (np.arange(steps) - np.arange(steps)[:, None]) % steps * self._STEP_S
+        self._weight = np.exp(-after / self._FALLS_S)
+        self._count = np.zeros(steps)
+        self._recent: deque[int] = deque()
+        self._last_s = -math.inf
+        self._least_s = math.nan
+
+    def __call__(self, received_s: float, second: int | None) -> float:
+        """The time of a position on the receiver's clock; NaN where it is not known."""
+        if second is None or not 0 <= second < 60:
+            return math.nan
+        since_s = (received_s - second) % self._MINUTE_S
+        if received_s - self._last_s >= self._APART_S:
+            self._last_s = received_s
+            self._learn(min(int(since_s / self._STEP_S), len(self._count) - 1))
+        age_s = (since_s - self._least_s) % self._MINUTE_S
+        return received_s - (0.0 if age_s > self._MINUTE_S - 1.0 else age_s)
+
+    def _learn(self, step: int) -> None:
+        self._recent.append(step)
+        self._count[step] += 1
+        if len(self._recent) > self._MEMORY:
+            self._count[self._recent.popleft()] -= 1
+        weight = self._weight @ self._count
+        best = int(np.argmax(weight))
+        is_known = len(self._recent) >= self._FEWEST
+        is_clear = weight[best] > self._CLEAR * len(self._recent)
+        self._least_s = best * self._STEP_S if is_known and is_clear else math.nan
+
+
 @dataclass
 class AisVessel:
     """What AIS says of a vessel; NaN and empty where unknown.
@@ -83,6 +137,12 @@ class AisVessel:
     mmsi : int
     time_s : float
         Of its last position.
+    received_s : float
+        When that was received.
+    stated_s : float
+        Its time by the second that the vessel states.
+    stated_well : int
+        Positions in a row whose stated times fit how far the vessel has moved.
     latitude_deg, longitude_deg, course_rad, speed_mps, heading_rad : float
     accurate : bool
         Whether it reports an error of the position below 10 m.
@@ -96,6 +156,9 @@ class AisVessel:
 
     mmsi: int
     time_s: float = -math.inf
+    received_s: float = -math.inf
+    stated_s: float = math.nan
+    stated_well: int = 0
     latitude_deg: float = math.nan
     longitude_deg: float = math.nan
     course_rad: float = math.nan
@@ -167,6 +230,7 @@ class AisPicture:
 
     def __init__(self) -> None:
         self.vessels: dict[int, AisVessel] = {}
+        self._clock = AisClock()
 
     def add(self, time_s: float, message: Any) -> tuple[AisVessel, bool] | None:
         """Add a message; its vessel and whether its position is new, None for other messages."""
@@ -177,7 +241,10 @@ class AisPicture:
         vessel.is_class_b = vessel.is_class_b or kind in _CLASS_B
         if kind in (5, 19, 24):
             _take_static(vessel, message)
-        return vessel, kind in _POSITION_TYPES and _take_position(vessel, time_s, message)
+        if kind not in _POSITION_TYPES:
+            return vessel, False
+        stated_s = self._clock(time_s, getattr(message, "second", None))
+        return vessel, _take_position(vessel, time_s, stated_s, message)
 
     def update(self, time_s: float, mmsi: int, values: dict[str, Any]) -> tuple[AisVessel, bool]:
         """Take values by the names of `AisVessel`; the vessel and whether its position is new."""
@@ -186,7 +253,7 @@ class AisPicture:
             setattr(vessel, name, value)
         is_new = "latitude_deg" in values
         if is_new:
-            vessel.time_s = time_s
+            vessel.time_s = vessel.received_s = time_s
         return vessel, is_new
 
     def _vessel(self, time_s: float, mmsi: int) -> AisVessel:
@@ -212,7 +279,7 @@ class AisPicture:
             del self.vessels[mmsi]
 
 
-def _take_position(vessel: AisVessel, time_s: float, message: Any) -> bool:
+def _take_position(vessel: AisVessel, received_s: float, stated_s: float, message: Any) -> bool:
     latitude, longitude = float(message.lat), float(message.lon)
     if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0) or latitude == longitude == 0.0:
         return False  # 0/0 is that of a receiver without a fix
@@ -220,15 +287,40 @@ def _take_position(vessel: AisVessel, time_s: float, message: Any) -> bool:
     course_deg = getattr(message, "course", None)
     heading_deg = getattr(message, "heading", None)
     slow = speed_kn is not None and 0.0 <= speed_kn < 102.25
-    vessel.time_s = time_s
-    vessel.latitude_deg, vessel.longitude_deg = latitude, longitude
-    vessel.speed_mps = float(speed_kn) * KNOT_MPS if slow else math.nan
+    speed_mps = float(speed_kn) * KNOT_MPS if slow else math.nan
     good = course_deg is not None and 0.0 <= course_deg < 360.0
-    vessel.course_rad = math.radians(course_deg) if good else math.nan
+    course_rad = math.radians(course_deg) if good else math.nan
+
+    moved_s = _moved_s(vessel, latitude, longitude, speed_mps, course_rad)
+    later_s = stated_s - vessel.stated_s
+    fits = abs(moved_s - later_s) <= abs(moved_s - (received_s - vessel.received_s)) + 1.0
+    if fits and later_s < 0.5:
+        return False  # known, or from before: by another way
+    vessel.stated_well = vessel.stated_well + 1 if fits else 0
+    vessel.time_s = stated_s if vessel.stated_well >= _OFTEN else received_s
+    vessel.received_s, vessel.stated_s = received_s, stated_s
+    vessel.latitude_deg, vessel.longitude_deg = latitude, longitude
+    vessel.speed_mps, vessel.course_rad = speed_mps, course_rad
     good = heading_deg is not None and 0 <= heading_deg < 360
     vessel.heading_rad = math.radians(heading_deg) if good else math.nan
     vessel.accurate = bool(getattr(message, "accuracy", False))
     return True
+
+
+def _moved_s(
+    vessel: AisVessel,
+    latitude_deg: float,
+    longitude_deg: float,
+    speed_mps: float,
+    course_rad: float,
+) -> float:
+    """How long a vessel has run from its last position; NaN where it is too slow to tell."""
+    if not speed_mps > _SLOW_MPS:
+        return math.nan
+    north_deg = latitude_deg - vessel.latitude_deg
+    east_deg = (longitude_deg - vessel.longitude_deg) * math.cos(math.radians(latitude_deg))
+    along_deg = north_deg * math.cos(course_rad) + east_deg * math.sin(course_rad)
+    return along_deg * 60.0 * NAUTICAL_MILE_M / speed_mps
 
 
 def _take_static(vessel: AisVessel, message: Any) -> None:

@@ -51,6 +51,8 @@ _GUARD_ZONE = """\
 # Of entry, exit and occupancy, which is a stay of occupancy_s.
 # triggers = ["entry"]
 # occupancy_s = 60.0
+# A target has left when it is outside by so much. [m]
+# hysteresis_m = 10.0
 """.splitlines()
 
 
@@ -348,6 +350,8 @@ class LiveConfig:
             for one in each:
                 mark = "# " if empty else ""
                 lines += [f"{mark}{line}" for line in _section(f"[{name}]", one)]
+                if name == "radar":
+                    lines[-1:] = [*self.settings.toml_of_radar(one.settings), ""]
         common = self.settings.toml().partition("[tracker]")
         before = common[0].rstrip().rpartition("\n")[2]
         if not self.guard_zones:
@@ -449,7 +453,6 @@ def _section(name: str, values: Any) -> Iterator[str]:
     for one in fields(values):
         value = getattr(values, one.name)
         if one.name == "settings":
-            yield from (f"{key} = {json.dumps(each)}" for key, each in value.items())
             continue
         yield f"# {one.metadata['about']}"
         text = "nan" if _is_nan(value) else json.dumps(value)

@@ -205,7 +205,7 @@ def _strait(start_s: float) -> Iterator[_Message]:
                 yield _Message(at_s, "strait radar", _encoded(encoder, piece[k : k + 1], start_s))
             if at_s >= next_ais_s:
                 next_ais_s += _AIS_S
-                yield from _ais(targets, plane, at_s)
+                yield from _ais(targets, plane, at_s, start_s)
 
 
 def _encoded(encoder: Cat240Encoder, sweep: recording.RadarVideo, start_s: float) -> bytes:
@@ -219,14 +219,18 @@ def _encoded(encoder: Cat240Encoder, sweep: recording.RadarVideo, start_s: float
     )
 
 
-def _ais(targets: dict[str, VideoTarget], plane: wl.LocalPlane, at_s: float) -> Iterator[_Message]:
+def _ais(
+    targets: dict[str, VideoTarget], plane: wl.LocalPlane, at_s: float, start_s: float
+) -> Iterator[_Message]:
     """Positions and names of the vessels, with pyais; nothing without it."""
     try:
         import pyais
     except ModuleNotFoundError:
         return
+    second_s = math.floor(start_s + at_s)
     for k, (name, target) in enumerate(targets.items()):
-        north, vnorth, east, veast = target.truth.state_at(np.array([at_s]))[0].tolist()
+        state = target.truth.state_at(np.array([second_s - start_s]))[0]
+        north, vnorth, east, veast = state.tolist()
         latitude, longitude = _degrees(plane, np.array([north, east]))
         course_deg = math.degrees(math.atan2(veast, vnorth)) % 360.0
         position = {
@@ -238,6 +242,7 @@ def _ais(targets: dict[str, VideoTarget], plane: wl.LocalPlane, at_s: float) -> 
             "course": course_deg,
             "heading": round(course_deg) % 360,
             "accuracy": 1,
+            "second": second_s % 60,
         }
         static = {"type": 5, "mmsi": _MMSI + k, "shipname": name, "ship_type": 70}
         for message in (position, static):

@@ -255,14 +255,14 @@ class Session:
             self._add_own(time_s, key, "position", (vessel.latitude_deg, vessel.longitude_deg))
             del self.ais.vessels[vessel.mmsi]
             return
-        self._report_vessel(time_s, vessel)
+        self._report_vessel(vessel)
 
     def _take_vessel(self, time_s: float, source: Source, reading: Any) -> None:
         vessel, is_new = self.ais.update(time_s, reading.mmsi, reading.values)
         if is_new:
-            self._report_vessel(time_s, vessel)
+            self._report_vessel(vessel)
 
-    def _report_vessel(self, time_s: float, vessel: AisVessel) -> None:
+    def _report_vessel(self, vessel: AisVessel) -> None:
         """Give the position of a vessel to the tracker."""
         if self.plane is None:
             return
@@ -273,7 +273,7 @@ class Session:
         self._report(
             source="ais",
             identity=str(vessel.mmsi),
-            time_s=time_s,
+            time_s=vessel.time_s,
             north_m=north_m,
             east_m=east_m,
             position_std_m=vessel.position_std_m,

@@ -139,14 +139,16 @@ def read_plots(
         ]
 
     episodes = episodes_of(period_s)
-    if period_s is None and plots.scan is None and (own_rows is None or own_rows.scan is None):
+    is_listed = plots.scan is not None or (own_rows is not None and own_rows.scan is not None)
+    if period_s is None and not is_listed:
         episodes = _in_turns(episodes, episodes_of, notes)
     if azimuth == "bow":
         if not plots.polar:
             raise ValueError(f"azimuths from the bow need bearings, which {plots_path} has not")
         episodes = [turned_to_north(episode, own_path) for episode in episodes]
     _note_far(episodes, notes)
-    notes += period_notes(episodes, period_s)
+    turn_s = None if is_listed or period_s is None else _revolution_s(episodes)
+    notes += period_notes(episodes, period_s, turn_s)
     notes += azimuth_notes(episodes, azimuth) if plots.polar else []
     notes[:] = dict.fromkeys(notes)
     recording = Recording(name or Path(plots_path or own_path).stem, episodes, notes)

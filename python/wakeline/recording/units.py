@@ -35,12 +35,19 @@ def unit_notes(polar: np.ndarray, range_name: str, bearing_name: str) -> Iterato
         yield f"{within}: if {range_name} is in nautical miles, name it range_nm"
 
 
-def period_notes(episodes: Sequence[Episode], period_s: float | None) -> Iterator[str]:
-    """Notes on times between scans that no antenna has, or that differ from `period_s`."""
+def period_notes(
+    episodes: Sequence[Episode], period_s: float | None, turn_s: float | None = None
+) -> Iterator[str]:
+    """Notes on times between scans that no antenna has, or that differ from `period_s`.
+
+    `turn_s` is the time of a revolution as bearings show it, where scans are those of `period_s`.
+    """
     steps_s = [np.diff([scan.time_s for scan in episode.scans]) for episode in episodes]
     step_s = float(np.median(np.concatenate(steps_s))) if any(map(len, steps_s)) else 0.0
     if step_s >= _LONGEST_REVOLUTION_S:
         apart = f"scans are {step_s:g} s apart, longer than a revolution of a ship's radar"
         yield f"{apart}: if times are in milliseconds, divide them by 1000"
+    elif period_s and turn_s and abs(turn_s - period_s) > _PERIODS_AGREE * period_s:
+        yield f"period_s of {period_s:g} s is used, though the antenna turns in {turn_s:.3g} s"
     elif period_s and step_s and abs(step_s - period_s) > _PERIODS_AGREE * period_s:
         yield f"period_s of {period_s:g} s is used, though scans are {step_s:.3g} s apart"

@@ -51,13 +51,24 @@ def _engine_name(key: str) -> str:
     return f"{key[:-4]}_rad" if key.endswith("_deg") else key
 
 
+def _in_degrees(text: str) -> str:
+    """Names and numbers of angles in a rule or a message, which are in radians."""
+
+    def degrees(found: re.Match[str]) -> str:
+        return f"{math.degrees(math.pi if found[0] == 'pi' else float(found[0])):.4g}"
+
+    text = re.sub(r"(\w)_rad\b", r"\1_deg", text.replace(", in radians", ""))
+    return re.sub(r"-?\b\d[\d.]*(?:e[+-]?\d+)?\b|\bpi\b", degrees, text)
+
+
 def _explained(section: str) -> dict[str, str]:
     """The sentence of each key of a section, with its unit and rule, from the field tables."""
     lines = {}
     for name, _, _, unit, rule, sentence in _CLASSES[section].fields():
-        in_degrees = name.endswith("_rad")
-        key = f"{name[:-4]}_deg" if in_degrees else name
-        unit = "degrees" if in_degrees else unit if unit != "1" else ""
+        key, unit = name, unit if unit != "1" else ""
+        if name.endswith("_rad"):
+            key, unit, rule = f"{name[:-4]}_deg", "degrees", _in_degrees(rule)
+            sentence = _in_degrees(sentence)
         lines[key] = f"{sentence} [{'; '.join(filter(None, (unit, rule)))}]"
     return lines | {"period_s": _PERIOD} if section == "radar" else lines
 
@@ -230,6 +241,13 @@ class Settings:
         """The section ``[radar]`` of :meth:`toml`."""
         return "\n".join(self._section("radar"))
 
+    def toml_of_radar(self, given: Mapping[str, Value]) -> Iterator[str]:
+        """The lines of a section ``[[radar]]``; those that are not given are comments."""
+        for key, sentence in KEYS["radar"].items():
+            mark = "" if key in given else "# "
+            yield f"# {sentence}"
+            yield f"{mark}{key} = {json.dumps(given.get(key, self.radar[key]))}"
+
     def toml(self) -> str:
         """Every setting with a line of explanation; reading it gives the same settings."""
         sections = "\n".join(line for section in KEYS for line in self._section(section))
@@ -381,6 +399,7 @@ def _check_values(
         for key, value in after.items():
             if value != before[key] and reason.startswith(f"{_engine_name(key)} "):
                 place = f"{path}: [{section}] {key}"
+                reason = _in_degrees(reason) if key.endswith("_deg") else reason
                 raise SettingsError(f"{place} = {quoted(value)}: {reason}") from None
         raise SettingsError(f"{path}: [{section}]: {reason}") from None
 

@@ -138,7 +138,7 @@ def tune(
 
     A weak prior (a factor of e about the given value) keeps what the plots do not determine near
     where it was. Standard deviations are those of the observed information. A parameter is
-    determined if its own is less than a third of its value.
+    determined if its own is less than 35 % of its value.
 
     Parameters
     ----------
