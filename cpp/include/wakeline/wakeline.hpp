@@ -136,6 +136,7 @@
 #include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/pack.hpp"
 #include "wakeline/simd/pack_math.hpp"
+#include "wakeline/simd/prefetch.hpp"
 #include "wakeline/simd/scalar.hpp"
 #include "wakeline/simd/side_by_side.hpp"
 #include "wakeline/simd/unroll.hpp"

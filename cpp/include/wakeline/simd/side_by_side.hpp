@@ -18,6 +18,7 @@
 #include "wakeline/multimodel/model_group_imm.hpp"
 #include "wakeline/simd/flatten.hpp"
 #include "wakeline/simd/pack_math.hpp"
+#include "wakeline/simd/prefetch.hpp"
 
 namespace wakeline {
 
@@ -208,6 +209,9 @@ class SideBySide<Estimator> {
         Row<Step> row{.step = {}, .count = int(std::min(kLanes, count - first))};
         for (std::size_t k = 0; k < kLanes; ++k)
           row.step[k] = order[std::min(first + k, count - 1)];
+        // Those of the next row, which are seldom in the cache, while this row is at work.
+        for (std::size_t k = first + kLanes; k < std::min(first + 2 * kLanes, count); ++k)
+          prefetch(*order[k]->estimator);
         take(row);
       }
       steps = steps.subspan(count);

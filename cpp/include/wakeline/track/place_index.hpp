@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "wakeline/simd/prefetch.hpp"
 #include "wakeline/track/plane_index.hpp"
 #include "wakeline/track/plane_slices.hpp"
 
@@ -72,14 +73,11 @@ class PlaceIndex {
   void for_each_nearest_of(const std::vector<Element>& elements, const Vec<double, 2>& position,
                            const Reach& reach_m, Function&& function) const {
     static_assert(kMost <= PlaneSlices::kMostNear);
-    constexpr std::size_t kLine = 64;  // bytes of the cache
     std::array<int, kLayers * kMost> found;
     std::size_t count = 0;
     for_each_nearest(position, reach_m, kMost, [&](int name) {
       found[count++] = name;
-      const auto* element =
-          reinterpret_cast<const std::byte*>(&elements[static_cast<std::size_t>(name)]);
-      for (std::size_t k = 0; k < sizeof(Element); k += kLine) __builtin_prefetch(element + k);
+      prefetch(elements[static_cast<std::size_t>(name)]);
     });
     for (std::size_t k = 0; k < count; ++k) function(found[k]);
   }
