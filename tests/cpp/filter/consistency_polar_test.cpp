@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Wakeline developers
 // SPDX-License-Identifier: MIT
 #include "filter/consistency_laws.hpp"
+#include "wakeline/measurement/bearing.hpp"
 
 namespace wakeline::consistency_polar_test {
 namespace {
@@ -69,6 +70,16 @@ TEST(Consistency, EkfThatStartsAtTheAntenna) {
     expect_consistent(Ekf{motion}, radar, about_antenna(north_m, 3000.0), 200, 20, 2.5);
     expect_consistent(Ekf{motion}, doppler, about_antenna(north_m, 3000.0), 200, 20, 2.5);
   }
+}
+
+// Bearings from a fixed place leave the range as uncertain as it was, however many they are.
+TEST(Consistency, BearingsAloneOfATargetWithoutARange) {
+  const ConstantVelocity motion{.noise = WhiteAcceleration{0.001}};
+  const Bearing finder{.bearing_std_rad = deg(0.5)};
+  Gaussian<4> start = about_antenna(5000.0, 1300.0);
+  start.covariance(2, 2) = 50.0 * 50.0;
+  expect_consistent(Ekf{motion}, finder, start, 300, 60, 2.5);
+  expect_consistent(Ukf{motion}, finder, start, 300, 60, 2.5);
 }
 
 // A plot at no range at all has no place to be linearised about either.

@@ -87,7 +87,7 @@ struct RuntimeInnovation {
     const StateRows reads = sensor.reads();
     const StateRows& held = rows_of(belief.layout);
     int row[kMaxStates];
-    AnyBelief::Mean x(reads.states), variance(reads.states);
+    AnyBelief::Mean x(reads.states);
     for (int k = 0; k < reads.states; ++k) {
       row[k] = held.row_of(reads.components[static_cast<std::size_t>(k)]);
       if (row[k] < 0) {
@@ -95,7 +95,6 @@ struct RuntimeInnovation {
         return;
       }
       x[k] = belief.mean[row[k]];
-      variance[k] = belief.covariance(row[k], row[k]);
     }
     AnyBelief::Covariance p(reads.states, reads.states);
     for (int j = 0; j < reads.states; ++j)
@@ -116,18 +115,18 @@ struct RuntimeInnovation {
     for (int m = 0; m < count; ++m)
       for (int n = 0; n < count; ++n) s[m][n] = r[m][n] = noise(number[m], number[n]);
     if (unscented == nullptr)
-      linearise(sensor, z, x, variance, row, centre, belief);
+      linearise(sensor, z, observed.covariance, x, p, row, centre, belief);
     else
       spread_points(sensor, z, x, row, centre, *unscented, belief);
   }
 
  private:
-  template <class Sensor, class Reading>
-  void linearise(const Sensor& sensor, const Reading& z, const AnyBelief::Mean& x,
-                 const AnyBelief::Mean& variance, const int* row, const Reading& centre,
-                 const AnyBelief& belief) noexcept {
+  template <class Sensor, class Reading, int M>
+  void linearise(const Sensor& sensor, const Reading& z, const Mat<double, M, M>& observed_r,
+                 const AnyBelief::Mean& x, const AnyBelief::Covariance& p, const int* row,
+                 const Reading& centre, const AnyBelief& belief) noexcept {
     AnyBelief::Mean at = x;
-    const bool moved = sensor.moves(at, variance, z);
+    const bool moved = sensor.moves(at, p, z, observed_r);
     const auto innovation = sensor.residual(z, moved ? sensor.measure(at) : centre);
     const auto jacobian = sensor.jacobian(at);
     const auto reads = static_cast<int>(x.size());
@@ -303,10 +302,12 @@ struct Observing {
                     const AnyBelief::Covariance&) const noexcept {
     return r;
   }
-  bool moves(AnyBelief::Mean& x, const AnyBelief::Mean& variance, const Reading& z) const noexcept {
+  bool moves(
+      AnyBelief::Mean& x, const AnyBelief::Covariance& p, const Reading& z,
+      const Mat<double, Sensor::kMeasurements, Sensor::kMeasurements>& observed_r) const noexcept {
     if constexpr (BendingSensor<Sensor>) {
       const Read at = x;
-      if (!sensor.bends(at, Read(variance))) return false;
+      if (!sensor.bends(Gaussian<kReadsOf<Sensor>>{at, p}, observed_r)) return false;
       x = sensor.moved_to(at, z);
       return true;
     } else {

@@ -204,14 +204,17 @@ class RuntimeSensorOf {
     });
   }
 
-  /// The place to linearise at instead of x, for a reading and a belief of these variances; see
-  /// `BendingSensor`. False where it is x.
-  [[nodiscard]] bool moves(AnyBelief::Mean& x, const AnyBelief::Mean& variance,
-                           const ReadingVector& z) const noexcept {
+  /// The place to linearise at instead of x, for a belief N(x, P) and a reading with covariance
+  /// `r`; see `BendingSensor`. False where it is x.
+  [[nodiscard]] bool moves(AnyBelief::Mean& x, const AnyBelief::Covariance& p,
+                           const ReadingVector& z,
+                           const Mat<double, kMostNumbers, kMostNumbers>& r) const noexcept {
     return visit([&]<class Sensor>(const Sensor& sensor) {
       if constexpr (BendingSensor<Sensor>) {
+        constexpr int kM = Sensor::kMeasurements;
         const auto at = read(sensor, x);
-        if (!sensor.bends(at, read(sensor, variance))) return false;
+        const Gaussian<kReadsOf<Sensor>> belief{at, p};
+        if (!sensor.bends(belief, Mat<double, kM, kM>(r.topLeftCorner(kM, kM)))) return false;
         x = sensor.moved_to(at, NumbersOf<Sensor>(z));
         return true;
       } else {

@@ -168,9 +168,12 @@ class Ekf : public Belief<MotionType, ScalarType> {
       this->innovation = sensor.residual(reading.mean, sensor.measure(read));
       h = sensor.jacobian(read);
       if constexpr (BendingSensor<Sensor>) {
-        Vec<Scalar, kReads> variance;
-        unroll<kReads>([&](int k) { variance[k] = belief.covariance(kRows[k], kRows[k]); });
-        const MaskOf<Scalar> bends = sensor.bends(read, variance);
+        Gaussian<kReads, Scalar> at{read, {}};
+        unroll<kReads * kReads>([&](auto k) {
+          constexpr int i = k.value % kReads, j = k.value / kReads;
+          at.covariance(i, j) = belief.covariance(kRows[i], kRows[j]);
+        });
+        const MaskOf<Scalar> bends = sensor.bends(at, reading.covariance);
         if (any(bends)) [[unlikely]] {
           const Line line = line_at_reading(sensor, read, Vec<Scalar, kM>(reading.mean));
           assign_where(bends, this->innovation, line.innovation);

@@ -63,11 +63,12 @@ struct Bearing {
     return difference;
   }
 
-  /// True within `kBendingStds` of the antenna.
+  /// About the antenna.
   template <class Scalar>
-  MaskOf<Scalar> bends(const Vec<Scalar, 2>& position,
-                       const Vec<Scalar, 2>& variance) const noexcept {
-    return polar().bends(position, variance);
+  MaskOf<Scalar> bends(const Gaussian<2, Scalar>& position,
+                       const Mat<Scalar, 1, 1>&) const noexcept {
+    return bends_about_antenna<Scalar>(position.mean - own.position<Scalar>(), position.covariance,
+                                       false);
   }
 
   /// The position at that bearing and at the range of `position`.

@@ -46,14 +46,17 @@ concept LinearMeasurementModel = MeasurementModel<Sensor> && Sensor::kLinear;
 /// A sensor whose h may bend so much within a belief that the derivatives at its mean are useless,
 /// as those of range and bearing do about the antenna:
 ///
-/// - `bends(x_r, variance)`: where it does, for a belief of this mean and these variances;
+/// - `bends(belief, r)`: where it does, for a belief over x_r and a reading of this covariance;
 /// - `moved_to(x_r, z)`: the components x_r with those that the reading z determines.
 ///
 /// There an `Ekf` takes h and its derivatives at the second.
 template <class Sensor>
 concept BendingSensor = requires(const Sensor& sensor, const Vec<double, Sensor::kMeasurements>& z,
                                  const Vec<double, kReadsOf<Sensor>>& x) {
-  { sensor.bends(x, x) } -> std::convertible_to<bool>;
+  {
+    sensor.bends(Gaussian<kReadsOf<Sensor>>{x, {}},
+                 Mat<double, Sensor::kMeasurements, Sensor::kMeasurements>{})
+    } -> std::convertible_to<bool>;
   { sensor.moved_to(x, z) } -> SameSize<Vec<double, kReadsOf<Sensor>>>;
 };
 

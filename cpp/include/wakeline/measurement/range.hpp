@@ -55,11 +55,12 @@ struct Range {
     return a - b;
   }
 
-  /// True within `kBendingStds` of the antenna.
+  /// About the antenna.
   template <class Scalar>
-  MaskOf<Scalar> bends(const Vec<Scalar, 2>& position,
-                       const Vec<Scalar, 2>& variance) const noexcept {
-    return polar().bends(position, variance);
+  MaskOf<Scalar> bends(const Gaussian<2, Scalar>& position,
+                       const Mat<Scalar, 1, 1>&) const noexcept {
+    return bends_about_antenna<Scalar>(position.mean - own.position<Scalar>(), position.covariance,
+                                       false);
   }
 
   /// The position at that range and at the bearing of `position`.

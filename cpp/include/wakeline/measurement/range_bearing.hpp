@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
+
 #include "wakeline/core/fields.hpp"
 #include "wakeline/measurement/concept.hpp"
 #include "wakeline/measurement/polar.hpp"
@@ -15,6 +17,24 @@ inline constexpr double kMinRange_m = 1e-3;
 /// covariance), within which derivatives at the mean are useless. With less an EKF that starts at
 /// two to three of them is wrong by tens of its standard deviations.
 inline constexpr double kBendingStds = 4.0;
+
+/// Whether range and bearing bend too much for derivatives at the mean of a belief, of which `d` is
+/// the way from the antenna: within `kBendingStds`. To a bearing or a range alone, which does not
+/// say where on the line of sight or about the antenna a target is, only what is uncertain across
+/// the line counts. Derivatives at the reading, of which the errors are then those of the reading,
+/// would lead an EKF astray where they are not needed.
+template <class Scalar>
+MaskOf<Scalar> bends_about_antenna(const Vec<Scalar, 2>& d, const Mat<Scalar, 2, 2>& covariance,
+                                   const MaskOf<Scalar>& is_whole) noexcept {
+  const Scalar range2 = d[0] * d[0] + d[1] * d[1];
+  const Scalar stds2 = Scalar(kBendingStds * kBendingStds);
+  const MaskOf<Scalar> within = range2 < stds2 * (covariance(0, 0) + covariance(1, 1));
+  if (none(within)) [[likely]]
+    return within;
+  const Scalar across = d[1] * d[1] * covariance(0, 0) -
+                        Scalar(2) * d[0] * d[1] * covariance(0, 1) + d[0] * d[0] * covariance(1, 1);
+  return within && (is_whole || range2 * range2 <= Scalar(2) * stds2 * across);
+}
 
 /// A plot `[range m, bearing rad]` for EKF and UKF.
 /// Source: Bar-Shalom, Li, Kirubarajan, 10.4.1; paper A, equation (6).
@@ -73,13 +93,13 @@ struct RangeBearing {
     return {a[0] - b[0], wrap_angle<Scalar>(a[1] - b[1])};
   }
 
-  /// True within `kBendingStds` of the antenna.
+  /// About the antenna; a number with an infinite variance in `r` is missing.
   template <class Scalar>
-  MaskOf<Scalar> bends(const Vec<Scalar, 2>& position,
-                       const Vec<Scalar, 2>& variance) const noexcept {
-    const Vec<Scalar, 2> d = position - own.position<Scalar>();
-    const Scalar spread2 = Scalar(kBendingStds * kBendingStds) * (variance[0] + variance[1]);
-    return d[0] * d[0] + d[1] * d[1] < spread2;
+  MaskOf<Scalar> bends(const Gaussian<2, Scalar>& position,
+                       const Mat<Scalar, 2, 2>& r) const noexcept {
+    constexpr double kMissing = std::numeric_limits<double>::infinity();
+    return bends_about_antenna<Scalar>(position.mean - own.position<Scalar>(), position.covariance,
+                                       r(0, 0) + r(1, 1) < Scalar(kMissing));
   }
 
   /// The position of the plot, at least one standard deviation of the range from the antenna.

@@ -78,10 +78,12 @@ struct RangeBearingDoppler {
 
   /// Where range and bearing do.
   template <class Scalar>
-  MaskOf<Scalar> bends(const Vec<Scalar, 4>& kinematics,
-                       const Vec<Scalar, 4>& variance) const noexcept {
-    return range_bearing().bends(Vec<Scalar, 2>(kinematics[0], kinematics[2]),
-                                 Vec<Scalar, 2>(variance[0], variance[2]));
+  MaskOf<Scalar> bends(const Gaussian<4, Scalar>& kinematics,
+                       const Mat<Scalar, 3, 3>& r) const noexcept {
+    const auto position = Eigen::seqN(0, Eigen::fix<2>, Eigen::fix<2>);
+    return range_bearing().bends(
+        Gaussian<2, Scalar>{kinematics.mean(position), kinematics.covariance(position, position)},
+        Mat<Scalar, 2, 2>(r.template topLeftCorner<2, 2>()));
   }
 
   /// The position of the plot with the velocity as it is.
