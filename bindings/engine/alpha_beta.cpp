@@ -145,7 +145,7 @@ void define_alpha_beta(py::module_& m) {
       R"(The alpha-beta filter over [x, vx, y, vy], with a gain schedule.
 
 ``x += alpha e`` and ``vx += beta e / T`` per axis, with e the innovation in north and east and T the time since the previous
-reading, including missed scans; readings within an eighth of a step count as simultaneous. Covariance, NIS and likelihood are
+reading, including missed scans; readings within an eighth of a scan count as simultaneous. Covariance, NIS and likelihood are
 those of these gains under the given noise, so that it can be compared with a Kalman filter. Uses the position of any sensor.
 
 Parameters

@@ -398,6 +398,22 @@ TEST(AlphaBetaFilter, ReadingsOfOneTimeHaveOneStepBetweenThem) {
   EXPECT_EQ(at_once.estimate().mean[1], test::five_km_off<double>().mean[1]);
 }
 
+TEST(AlphaBetaFilter, TheReadingAfterAGapIsNotOneOfItsTime) {
+  constexpr double kAlpha = 0.5, kBeta = 0.2;
+  auto filter = started(AlphaBeta<>(ConstantGains{kAlpha, kBeta}));
+  for (int k = 0; k < 20; ++k) {
+    const bool seen = k < 5 || k > 15;
+    ASSERT_EQ(filter.predict(1.0), Status::kOk);
+    const auto predicted = filter.estimate().mean;
+    if (!seen) continue;
+    ASSERT_TRUE(filter.update(kSensor, Vec<double, 2>(3030, 3990)));
+    const double step_s = k == 16 ? 12.0 : 1.0;
+    EXPECT_NEAR(filter.estimate().mean[1], predicted[1] + kBeta / step_s * (3030 - predicted[0]),
+                1e-9)
+        << k;
+  }
+}
+
 // Two radars of one period, the second so much behind the first.
 TEST(AlphaBetaFilter, ForgetsItsErrorsHoweverTwoRadarsAreOutOfStep) {
   constexpr double kPeriod_s = 2.5;

@@ -81,9 +81,9 @@ struct RecentPlots {
 /// per axis, e the innovation in north and east and T the time since the last reading, missed scans
 /// included. Where the plot is more accurate along the bearing than across, a schedule that depends
 /// on its error has different gains along and across. Readings of about the same time, within an
-/// eighth of a step of the first of them, share one T: over the short time between two
-/// unsynchronised radars beta / T would be so large that errors grow with every gain. A reading at
-/// the time of the start corrects the position only.
+/// eighth of the longest prediction before the first of them, share one T: over the short time
+/// between two unsynchronised radars beta / T would be so large that errors grow with every gain. A
+/// reading at the time of the start corrects the position only.
 ///
 /// The covariance is the true one for these gains when plots and motion match the models: (I - K H)
 /// P (I - K H)ᵀ + K R Kᵀ after an update, F P Fᵀ + Q after a prediction. NIS and likelihood follow
@@ -165,11 +165,14 @@ class AlphaBetaFilter
     static_cast<Base&>(loaded).archive(fields);
     fields(occasion.reading);
     fields(occasion.elapsed_s);
+    fields(occasion.step_s);
     fields(occasion.since_s);
+    fields(occasion.since_step_s);
     fields(occasion.taken);
     occasion.recent.archive(fields);
     if (!(occasion.reading >= Scalar(1)) || !(occasion.elapsed_s >= Scalar(0)) ||
-        !(occasion.since_s >= Scalar(0)))
+        !(occasion.step_s >= Scalar(0)) || !(occasion.since_s >= Scalar(0)) ||
+        !(occasion.since_step_s >= Scalar(0)))
       fields.fail();
     if (fields.loading() && fields.ok()) *this = loaded;
   }
@@ -181,15 +184,19 @@ class AlphaBetaFilter
   struct Occasion {
     Scalar reading = Scalar(1);
     Scalar elapsed_s = Scalar(0);
-    Scalar since_s = Scalar(0);    ///< since it was taken
-    MaskOf<Scalar> taken = false;  ///< the reading has been taken; a later one is the next
-    RecentPlots<Scalar> recent;    ///< empty unless gains are adaptive
+    Scalar step_s = Scalar(0);        ///< the longest prediction of that time
+    Scalar since_s = Scalar(0);       ///< since it was taken
+    Scalar since_step_s = Scalar(0);  ///< the longest prediction since
+    MaskOf<Scalar> taken = false;     ///< the reading has been taken; a later one is the next
+    RecentPlots<Scalar> recent;       ///< empty unless gains are adaptive
 
     friend void assign_where(const MaskOf<Scalar>& condition, Occasion& target,
                              const Occasion& value) noexcept {
       target.reading = select(condition, value.reading, target.reading);
       target.elapsed_s = select(condition, value.elapsed_s, target.elapsed_s);
+      target.step_s = select(condition, value.step_s, target.step_s);
       target.since_s = select(condition, value.since_s, target.since_s);
+      target.since_step_s = select(condition, value.since_step_s, target.since_step_s);
       target.taken = (condition && value.taken) || (!condition && target.taken);
       assign_where(condition, target.recent, value.recent);
     }
@@ -219,18 +226,24 @@ class AlphaBetaFilter
 
   StatusOf<Scalar> count(const StatusOf<Scalar>& status, Scalar dt_s) noexcept {
     const Scalar passed_s = select(ok(status), dt_s, Scalar(0));
-    occasion_.elapsed_s += select(occasion_.taken, Scalar(0), passed_s);
-    occasion_.since_s += select(occasion_.taken, passed_s, Scalar(0));
+    const Scalar before_s = select(occasion_.taken, Scalar(0), passed_s);
+    const Scalar after_s = passed_s - before_s;
+    occasion_.elapsed_s += before_s;
+    occasion_.step_s = at_least(occasion_.step_s, before_s);
+    occasion_.since_s += after_s;
+    occasion_.since_step_s = at_least(occasion_.since_step_s, after_s);
     return status;
   }
 
   /// Starts a reading: the next one where it is later than those before.
   void begin() noexcept {
-    const auto later = occasion_.since_s > Scalar(kOneTime) * occasion_.elapsed_s;
+    const auto later = occasion_.since_s > Scalar(kOneTime) * occasion_.step_s;
     const auto next = occasion_.taken && later;
     occasion_.reading += select(next, Scalar(1), Scalar(0));
     occasion_.elapsed_s = select(next, occasion_.since_s, occasion_.elapsed_s);
+    occasion_.step_s = select(next, occasion_.since_step_s, occasion_.step_s);
     occasion_.since_s = select(next, Scalar(0), occasion_.since_s);
+    occasion_.since_step_s = select(next, Scalar(0), occasion_.since_step_s);
     occasion_.taken = occasion_.taken && !later;
   }
 
