@@ -267,7 +267,8 @@ time_s : (n,) array or float
 range_m, bearing_rad : (n,) array
     As measured.
 own_north_m, own_east_m, own_vnorth_mps, own_veast_mps : (n,) array or float
-    Own ship at the time of each plot.
+    Own ship at the times of the plots as if these were true, as its own log gives it: the place
+    where it was when the plot was taken is found with the time offset.
 own_position_std_m, heading_std_rad : float
     Standard deviations of own ship's position per axis, and of its heading.
 

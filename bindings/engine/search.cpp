@@ -180,7 +180,12 @@ With x the lateral range and W the sweep width: ``definite_range`` 1 up to W/2, 
       "parallel_track_pod",
       [](const std::string& law, const DoubleArray& coverage) {
         const auto option = to_option<DetectionLaw>("law", law);
-        return each([option](double c) { return parallel_track_pod(option, c); }, coverage);
+        return each(
+            [option](double c) {
+              require_not_negative("coverage", c);
+              return parallel_track_pod(option, c);
+            },
+            coverage);
       },
       py::arg("law"), py::arg("coverage"),
       R"(Probability of detection (POD) in an area swept by even parallel tracks.
@@ -189,7 +194,14 @@ Coverage C is sweep width / track spacing: min(1, C) for ``definite_range``, erf
 ``inverse_cube``, the mean over the area for ``exponential``.)");
   m.def(
       "random_search_pod",
-      [](const DoubleArray& coverage) { return each(random_search_pod, coverage); },
+      [](const DoubleArray& coverage) {
+        return each(
+            [](double c) {
+              require_not_negative("coverage", c);
+              return random_search_pod(c);
+            },
+            coverage);
+      },
       py::arg("coverage"), "POD of random search with a coverage C: 1 - exp(-C), of any law.");
   m.def("detection_potential", &detection_potential, py::arg("law"), py::arg("sweep_width_m"),
         py::arg("time_s"), py::arg("unit_m"), py::arg("object_time_s"), py::arg("object_m"),

@@ -476,7 +476,7 @@ turned_at : float
 gate_probability : float
     Probability that a good reading is inside the gate.
 rejections : int
-    Consecutive rejections before a reading is accepted; 0: all are accepted, nothing is refuted.
+    Consecutive rejections before a reading is accepted; 0: every reading is used as it is.
 alpha, beta, kappa : float
     Parameters of the unscented transform.
 

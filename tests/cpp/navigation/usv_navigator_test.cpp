@@ -228,6 +228,15 @@ TEST(UsvNavigator, FindsTheBiasesAndTheCurrent) {
   EXPECT_NEAR(seven.estimate().mean[4], kBias[2], deg(0.02));
 }
 
+TEST(UsvNavigator, WithoutRejectionsEveryReadingIsUsedAsItIs) {
+  UsvNavigator<UsvMotion> any(UsvMotion{}, UsvOutliers{.gate = {0.5}, .rejections = 0});
+  UsvNavigator<UsvMotion> wide(UsvMotion{}, UsvOutliers{.gate = {1 - 1e-12}});
+  const std::vector<Instant> log = mission(8, kNoBias);
+  const auto used = navigate(any, log).back(), expected = navigate(wide, log).back();
+  EXPECT_EQ(used.mean, expected.mean);
+  EXPECT_EQ(used.covariance, expected.covariance);
+}
+
 TEST(UsvNavigator, IgnoredBiasesAreFarWorse) {
   UsvNavigator<UsvMotion> five(UsvMotion{}, UsvOutliers{.gate = {1 - 1e-9}, .rejections = 0});
   const std::vector<Instant> log = mission(8, kBias);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
@@ -44,8 +45,12 @@ struct CompassEllipse {
 ///
 ///     (x² + y²)/2 + p (x² - y²)/2 + q xy + d x + e y + f = 0,
 ///
-/// which is linear in its five parameters and does not depend on the origin. Its error by noise is
-/// of the second order. Readings are taken one by one; only their moments are kept.
+/// which is linear in its five parameters and does not depend on the origin, adjusted for the noise
+/// of the readings: the moments are less what it adds to them, its variance is that which explains
+/// the residuals. Without that half a turn with a noise of 2 % of the field has an error of 4.5
+/// degrees instead of 1.5. Readings are taken one by one; only their moments are kept. Source: A.
+/// Kukush, I. Markovsky, S. Van Huffel, "Consistent estimation in an implicit quadratic measurement
+/// error model", Comp. Stat. Data Anal. 47, 2004.
 class CompassCalibration {
  public:
   /// Takes a reading [forward, starboard] of the turn. One that is not `in_range` is left out.
@@ -53,10 +58,10 @@ class CompassCalibration {
     if (!in_range(field)) return Status::kNotFinite;
     if (count_ == 0) first_ = field;
     const double x = field[0] - first_[0], y = field[1] - first_[1], square = (x * x + y * y) / 2;
-    const Row row(Vec<double, 5>((x * x - y * y) / 2, x * y, x, y, 1.0).transpose());
-    normal_ += row.transpose() * row;
-    right_ -= square * row.transpose();
-    squares_ += square * square;
+    const Vec<double, 5> row((x * x - y * y) / 2, x * y, x, y, 1.0);
+    moments_.normal += row * row.transpose();
+    moments_.right -= square * row;
+    moments_.squares += square * square;
     ++count_;
     return Status::kOk;
   }
@@ -75,24 +80,72 @@ class CompassCalibration {
     Fit result;
     if (count_ < 6) return result;
     result.status = Status::kNotPositiveDefinite;
-    const Vec<double, 5> scale = normal_.diagonal().cwiseSqrt();
-    if (!(scale.minCoeff() > 0)) return result;
-    const Cholesky<5> factor(scale.cwiseInverse().asDiagonal() * normal_ *
-                             scale.cwiseInverse().asDiagonal());
-    if (!factor.ok()) return result;
-    const Vec<double, 5> scaled = factor.solve<1>(Vec<double, 5>(right_.cwiseQuotient(scale)));
-    const Vec<double, 5> shape = scaled.cwiseQuotient(scale);
+    Mat<double, 5, 5> root;  // of the covariance of the shape
+    Moments moments = moments_;
+    double variance = 0.0, before;
+    Vec<double, 5> shape;
+    int pass = 0;
+    do {
+      const Vec<double, 5> scale = moments.normal.diagonal().cwiseSqrt();
+      if (!(scale.minCoeff() > 0)) return result;
+      const auto unscaled = scale.cwiseInverse().asDiagonal();
+      const Cholesky<5> factor(unscaled * moments.normal * unscaled);
+      if (!factor.ok()) return result;
+      shape = unscaled * factor.solve<1>(Vec<double, 5>(unscaled * moments.right));
+      const double residual = moments_.residual(shape) / static_cast<double>(count_ - 5);
+      root = std::sqrt(residual) * Mat<double, 5, 5>(factor.whiten<5>(unscaled)).transpose();
+      before = std::exchange(variance, residual / moments_.squared_slope(shape));
+      moments = moments_.without_noise(variance);
+    } while (std::abs(variance - before) > 1e-6 * variance && ++pass < kMostPasses);
     result.status = ellipse_of(shape, result.ellipse);
-    if (result.status != Status::kOk) return result;
-    const double residual = std::fmax(squares_ - shape.dot(right_), 0.0);
-    const double noise = std::sqrt(residual / static_cast<double>(count_ - 5));
-    const Mat<double, 5, 5> root = factor.whiten<5>(scale.cwiseInverse().asDiagonal()).transpose();
-    result.heading_std_rad = heading_std_rad(shape, result.ellipse, noise * root);
+    if (result.status == Status::kOk)
+      result.heading_std_rad = heading_std_rad(shape, result.ellipse, root);
     return result;
   }
 
  private:
-  using Row = Mat<double, 1, 5>;
+  static constexpr int kMostPasses = 50;
+
+  /// Sums over the readings of the products of [(x² - y²)/2, xy, x, y, 1] and of -(x² + y²)/2.
+  struct Moments {
+    Mat<double, 5, 5> normal = Mat<double, 5, 5>::Zero();
+    Vec<double, 5> right = Vec<double, 5>::Zero();
+    double squares = 0.0;
+
+    /// The sum of the squared algebraic distances.
+    [[nodiscard]] double residual(const Vec<double, 5>& shape) const noexcept {
+      return std::fmax(squares - 2 * shape.dot(right) + shape.dot(normal * shape), 0.0);
+    }
+
+    /// The mean squared slope of the algebraic distance at the readings.
+    [[nodiscard]] double squared_slope(const Vec<double, 5>& shape) const noexcept {
+      const Mat<double, 3, 3> line = normal.bottomRightCorner<3, 3>();
+      const Vec<double, 3> along_x(1 + shape[0], shape[1], shape[2]);
+      const Vec<double, 3> along_y(shape[1], 1 - shape[0], shape[3]);
+      return (along_x.dot(line * along_x) + along_y.dot(line * along_y)) / normal(4, 4);
+    }
+
+    /// Less what normal noise of that variance, per axis, adds to their means.
+    [[nodiscard]] Moments without_noise(double variance) const noexcept {
+      const double count = normal(4, 4), x = normal(2, 4), y = normal(3, 4);
+      const double squared = normal(2, 2) + normal(3, 3) - 2 * count * variance;
+      Moments less = *this;
+      less.normal.diagonal() -=
+          variance *
+          Vec<double, 5>(squared + count * variance, squared + count * variance, count, count, 0);
+      const auto subtract = [&](int row, int column, double sum) {
+        less.normal(row, column) -= variance * sum;
+        less.normal(column, row) -= variance * sum;
+      };
+      subtract(0, 2, x);
+      subtract(0, 3, -y);
+      subtract(1, 2, y);
+      subtract(1, 3, x);
+      less.right +=
+          variance * Vec<double, 5>(3 * normal(0, 4), 3 * normal(1, 4), 2 * x, 2 * y, count);
+      return less;
+    }
+  };
 
   /// The ellipse of the five parameters: with M = [1 + p, q; q, 1 - p]/2 it is
   /// (m - b)ᵀ M (m - b) = k, so that S = (M / k)^(-1/2).
@@ -136,9 +189,7 @@ class CompassCalibration {
 
   long count_ = 0;
   Vec<double, 2> first_ = Vec<double, 2>::Zero();
-  Mat<double, 5, 5> normal_ = Mat<double, 5, 5>::Zero();
-  Vec<double, 5> right_ = Vec<double, 5>::Zero();
-  double squares_ = 0.0;
+  Moments moments_;
 };
 
 }  // namespace wakeline

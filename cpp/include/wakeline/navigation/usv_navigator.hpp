@@ -30,7 +30,8 @@ struct UsvOutliers {
         field("gate", &U::gate, "A reading outside this gate is rejected."),
         field(
             "rejections", &U::rejections, at_least(0), "readings",
-            "Readings of one sensor in a row that are rejected before the next one is believed."));
+            "Readings of one sensor in a row that are rejected before the next one is believed; 0: "
+            "every reading is used as it is."));
   }
 
   void validate() const { validate_fields(*this); }
@@ -60,7 +61,8 @@ struct UsvLeg {
 ///   long time into several steps, or the next position determines the velocity too precisely.
 /// - A reading outside the gate is rejected. After more than `rejections` of its kind in a row, the
 ///   belief is considered wrong: its covariance is widened by the most probable error that explains
-///   the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and the reading is used.
+///   the reading, P_ii += g_i², g = P Hᵀ (H P Hᵀ)⁻¹ v, and the reading is used. With 0 there is no
+///   gate.
 /// - It is not used when positions refute the readings: when positions fit the belief, and fit the
 ///   position integrated with the rejected readings so much worse that the accumulated difference
 ///   of NIS (CUSUM) is outside the gate. Velocities over ground then stay rejected until one is
@@ -157,7 +159,7 @@ class UsvNavigator {
     const State before = estimate();
     pause_s_[kKind] = std::exchange(silent_s_[kKind], Scalar(0));
     if constexpr (kSplitsWay<Sensor>) reading_error_[kKind] = reading.innovation[0];
-    const bool fits = gate<Sensor>().contains(reading.nis);
+    const bool fits = rejections_ == 0 || gate<Sensor>().contains(reading.nis);
     if (!fits && (rejected_[kKind] < rejections_ || !widen(sensor, reading.innovation))) {
       rejected_[kKind] = std::min(rejected_[kKind] + 1, rejections_);
       off_.col(kKind) = off<Sensor>(reading.innovation);
