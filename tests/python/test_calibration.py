@@ -273,6 +273,9 @@ def test_what_is_no_calibration_is_rejected(recorded):
     recording, reports = recorded
     with pytest.raises(ValueError, match="reports must be one mapping"):
         calibrate(recording, [reports, reports])
+    for std_m in (0.0, -5.0, np.nan):
+        with pytest.raises(ValueError, match="position_std_m"):
+            calibrate(recording, reports, position_std_m=std_m)
     twice = replace(recording, episodes=recording.episodes * 2)
     with pytest.raises(ValueError, match="episodes must follow each other"):
         calibrate(twice, reports)

@@ -79,7 +79,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--position-std",
-        type=float,
+        type=options.metres_above_zero,
         default=5.0,
         metavar="M",
         help="m, standard deviation of a reported position per axis (default 5)",

@@ -72,7 +72,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--fix-std",
-        type=_metres_above_zero,
+        type=options.metres_above_zero,
         metavar="M",
         default=own_ship.FIX_STD_M,
         help="standard deviation of a fix, per axis; default %(default)g m",
@@ -103,16 +103,6 @@ def _date(text: str) -> datetime.date:
     except ValueError:
         wanted = "wanted a date such as 2026-08-15"
         raise argparse.ArgumentTypeError(f"{wanted}, got {text!r}") from None
-
-
-def _metres_above_zero(text: str) -> float:
-    try:
-        metres = float(text)
-    except ValueError:
-        metres = np.nan
-    if not 0.0 < metres < np.inf:
-        raise argparse.ArgumentTypeError(f"wanted metres above 0, got {text!r}")
-    return metres
 
 
 def inputs(arguments: argparse.Namespace) -> list[Path]:

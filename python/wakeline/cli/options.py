@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,17 @@ from wakeline.recording import Recording, radar_names
 from wakeline.recording.azimuths import AZIMUTHS
 from wakeline.recording.table import ColumnNames
 from wakeline.tracking import Settings, open_recording
+
+
+def metres_above_zero(text: str) -> float:
+    """The value of an option."""
+    try:
+        metres = float(text)
+    except ValueError:
+        metres = math.nan
+    if not 0.0 < metres < math.inf:
+        raise argparse.ArgumentTypeError(f"wanted metres above 0, got {text!r}")
+    return metres
 
 
 def add_recording(parser: argparse.ArgumentParser) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._brief import many
+from wakeline._checks import positive
 from wakeline.recording import Recording, RecordingError, ais_csv, read_ais, truth_csv
 from wakeline.recording.table import Table, finding_columns
 
@@ -175,6 +176,7 @@ def calibrate(
     >>> found.bearing_rad.verdict
     'determined'
     """
+    positive(position_std_m=position_std_m)
     each = [reports] * len(recording) if isinstance(reports, Mapping) else list(reports)
     if len(each) != len(recording):
         raise ValueError(

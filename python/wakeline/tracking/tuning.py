@@ -134,7 +134,8 @@ def tune(
     of each track, of which a share are outliers (`outlier_probability` and `outlier_scale` of the
     tracker). The detection probability maximizes the likelihood of the scans with and without a
     plot of a track, where vessels are hidden for times as in the settings. Only tracks that move
-    count: echoes of quays and of anchored vessels have other errors.
+    count: echoes of quays and of anchored vessels have other errors. Errors are those of plots that
+    are no outliers; where there are none, give `outlier_probability` 0, else they are too small.
 
     A weak prior (a factor of e about the given value) keeps what the plots do not determine near
     where it was. Standard deviations are those of the observed information. A parameter is
