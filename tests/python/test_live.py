@@ -375,10 +375,32 @@ def test_a_target_that_is_acquired_has_no_figures_before_it_has_plots():
             session.feed(t, "x", json.dumps(line).encode())
         if k == 3:
             assert session.command(place)["ok"]
+        assert all(one["manual"] for one in session.picture()["tracks"])
         shown = [(one["status"], "cpa" in one) for one in session.picture()["tracks"]]
         assert shown == (
             [] if k < 3 else [("tentative", False)] if k < 7 else [("confirmed", True)]
         )
+
+
+def test_the_picture_has_the_first_sight_and_the_last_echo_of_a_track():
+    session = joyride_session()
+    session.feed(0.0, "x", b'{"own": {"north_m": 0.0, "east_m": 0.0}}')
+    firsts, ages = set(), []
+    for k in range(24):
+        t = 2.5 * k
+        plot = {"radar": "A", "time_s": t - 1.0, "range_m": 900.0, "bearing_rad": 1.0}
+        mark = {"radar": "A", "sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        own = {"own": {"north_m": 0.0, "east_m": 0.0}}
+        for line in (own, *([plot] if k < 20 else []), mark):
+            session.feed(t, "x", json.dumps(line).encode())
+        shown = session.picture()["tracks"] if k % 3 == 0 else ()
+        for track in shown:
+            firsts.add(track["first_s"])
+            ages.append(track["age_s"])
+    (first_s,) = firsts
+    assert first_s < 12.0
+    last_s = 2.5 * 19 - 1.0
+    assert ages == pytest.approx([1.0] * (len(ages) - 1) + [2.5 * 21 - last_s], abs=0.01)
 
 
 def test_each_radar_says_why_it_is_not_used():

@@ -135,6 +135,37 @@ def test_near_targets_take_the_numbers_of_far_ones_and_the_rest_are_counted():
     assert len(lost) == 25
 
 
+def test_a_target_that_the_operator_acquires_has_q_and_no_motion_until_it_has_plots():
+    session = wl.live.Session(
+        {"radar": [RADAR | {"period_s": 2.5}], "own": {"place_deg": ORIGIN_DEG}}
+    )
+    sent = []
+    session.add_output("udp://127.0.0.1:1?format=ttm").send = sent.append
+    alarms = session.watchers[0].alarms
+    for turn in range(40):
+        time_s = 2.5 * turn
+        bearings_rad = [1.0] * (turn < 30) + [2.0] * (15 <= turn < 30)
+        lines = [{"time_s": time_s, "range_m": 900.0, "bearing_rad": one} for one in bearings_rad]
+        lines.append({"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": time_s}})
+        for line in lines:
+            session.feed(time_s, "radar", json.dumps(line).encode())
+        if turn == 12:
+            place = {"north_m": 900.0 * math.cos(2.0), "east_m": 900.0 * math.sin(2.0)}
+            acquired = session.command({"command": "acquire"} | place)["track_id"]
+        if turn < 17:
+            assert not any(acquired in alarm.tracks for alarm in alarms.active if turn > 12)
+    rows = [fields_of(one) for one in sent if b"TTM" in one]
+    by_operator = [row for row in rows if float(row[3]) > 100.0]
+    others = [row for row in rows if float(row[3]) < 100.0]
+    assert {row[15] for row in by_operator} == {"M"}
+    assert {row[15] for row in others} == {"A"}
+    assert list(dict.fromkeys(row[12] for row in by_operator)) == ["Q", "T", "L"]
+    assert list(dict.fromkeys(row[12] for row in others)) == ["T", "L"]
+    for row in by_operator:
+        motion = {row[k] != "" for k in (5, 6, 8)}
+        assert motion == {row[12] != "Q"}
+
+
 def test_pynmea2_reads_every_sentence():
     pynmea2 = pytest.importorskip("pynmea2")
     sent, _ = run("ttm", 60.0)

@@ -151,6 +151,13 @@ def track_values(line: bytes) -> dict[str, Any]:
     return values
 
 
+def without_danger(line: bytes) -> bytes:
+    """The line of a track whose motion is not known yet."""
+    values = track_values(line) | {"status": "tentative"}
+    values.pop("cpa", None)
+    return write_line("track", values)
+
+
 def finite_only(value: Any) -> Any:
     """A value for JSON, with null for numbers that are not finite."""
     if type(value) in _PLAIN:

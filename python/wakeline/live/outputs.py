@@ -5,7 +5,9 @@ from __future__ import annotations
 import abc
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from functools import reduce
+from operator import xor
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -117,9 +119,14 @@ class WireOutput(Output, abc.ABC):
             "name": [shown.names[k] for k in chosen.tolist()],
         }
         more = self._more(session, chosen)
-        for octets in self._feed.update(session.time_s, **columns, **more):
+        messages = self._feed.update(session.time_s, **columns, **more)
+        for octets in self._marked(session, messages):
             self._send(octets)
         self.waiting = len(shown) - len(chosen) + self._feed.waiting
+
+    def _marked(self, session: Session, messages: Sequence[bytes]) -> Sequence[bytes]:
+        """Messages with what the feed does not know of their tracks."""
+        return messages
 
     def _chosen(self, session: Session) -> np.ndarray:
         """The rows of the tracks that are sent."""
@@ -141,13 +148,54 @@ class WireOutput(Output, abc.ABC):
         """What else the feed is given of these rows."""
 
 
+class _Form(NamedTuple):
+    """Which fields of a sentence of a target are what."""
+
+    status: int
+    motion: tuple[int, ...] = ()
+    acquisition: int = 0
+
+
+_SENTENCES = {b"TTM": _Form(12, (5, 6, 8, 9), 15), b"TLL": _Form(8)}
+
+
 class TtmOutput(WireOutput):
     """NMEA 0183: OSD with TTM, or TLL."""
+
+    def __init__(self, config: OutputConfig) -> None:
+        super().__init__(config)
+        self._track_of: dict[int, int] = {}  # by number, also of those that are lost now
+        self._acquiring: set[int] = set()
 
     def _make(self, session: Session) -> Any:
         periods = [radar.period_s for radar in session.tracker.radars]
         interval_s = max(_LEAST_INTERVAL_S, *periods)
         return wire.TtmFeed(session.plane, interval_s=interval_s, tll=self.config.format == "tll")
+
+    def _marked(self, session: Session, messages: Sequence[bytes]) -> Sequence[bytes]:
+        """Sentences with M of targets that the operator has acquired, at first Q and no motion."""
+        if not session.acquired:
+            return messages
+        self._track_of |= {number: track_id for track_id, number in self._feed.numbers.items()}
+        before, shown = self._acquiring, session.shown
+        self._acquiring = set(shown.track_id[shown.acquiring].tolist())
+        return [self._marked_one(session, one, before) for one in messages]
+
+    def _marked_one(self, session: Session, sentence: bytes, before: set[int]) -> bytes:
+        fields = sentence[1 : sentence.index(b"*")].split(b",")
+        form = _SENTENCES.get(fields[0][2:])
+        track_id = form and self._track_of.get(int(fields[1]))
+        if track_id not in session.acquired:
+            return sentence
+        is_lost = fields[form.status] == b"L"
+        if track_id in (before if is_lost else self._acquiring):
+            for k in form.motion:
+                fields[k] = b""
+            fields[form.status] = b"L" if is_lost else b"Q"
+        if form.acquisition:
+            fields[form.acquisition] = b"M"
+        text = b",".join(fields)
+        return b"$%s*%02X\r\n" % (text, reduce(xor, text))
 
     def _chosen(self, session: Session) -> np.ndarray:
         """Of more than there are numbers those in danger, then the nearest."""

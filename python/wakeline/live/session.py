@@ -85,6 +85,8 @@ class Session:
         Whose `send` receives octets.
     shown : Shown
         The shown tracks, each as of its last update.
+    acquired : dict of int to int
+        The tracks that the operator has acquired, and the plots at which they have motion.
     own : OwnShipSources
     ais : AisPicture
     sweeps : list of callable
@@ -159,7 +161,7 @@ class Session:
         self.news: list[dict[str, Any]] = []
         self._disagree: dict[tuple[int, str], float] = {}
         self._edge_rad: dict[str, float] = {}
-        self._acquired: dict[int, int] = {}  # by the operator: plots at which it has figures
+        self.acquired: dict[int, int] = {}
         if self.config.session.origin_deg:
             self._set_origin(*self.config.session.origin_deg)
         for one in self.config.radars:
@@ -528,12 +530,9 @@ class Session:
         self._published_s = self.time_s
         radar, self._unpublished = self._unpublished, ""
         table, rows, gone = self.tracker.updated()
-        self.shown.take(table, rows)
+        self.shown.take(table, rows, self.is_acquiring(table))
         self.shown.drop(gone)
         self._remember(table, rows)
-        for track_id in gone:
-            self._history.pop(track_id, None)
-            self._acquired.pop(track_id, None)
         if len(rows) or gone:
             lines = cache(partial(self.lines, table, rows, radar))
             for output in self.outputs.values():
@@ -541,6 +540,9 @@ class Session:
             if self.listeners:
                 for line in lines():
                     self._tell("track", json_lines.track_values(line))
+        for track_id in gone:
+            self._history.pop(track_id, None)
+            self.acquired.pop(track_id, None)
         if self.tracker.time_s - self._watched_s >= _WATCH_S:
             self._watched_s = self.tracker.time_s
             events = [
@@ -627,7 +629,17 @@ class Session:
             columns["place_deg"] = np.degrees(self.plane.place(mean[:, [0, 2]])).T
         if isinstance(own, Pose):
             columns |= self._relative(own, time_s, mean, covariance)
-        return table.json_lines(rows, radar=radar, modes=MODE_NAMES, **columns)
+        lines = table.json_lines(rows, radar=radar, modes=MODE_NAMES, **columns)
+        for k in np.flatnonzero(self.is_acquiring(table)[which]).tolist():
+            lines[k] = json_lines.without_danger(lines[k])
+        return lines
+
+    def is_acquiring(self, table: wl.track.TrackTable) -> np.ndarray:
+        """Which tracks of a table (n,) the operator has acquired that have too few plots yet."""
+        if not self.acquired:
+            return np.zeros(len(table.hits), dtype=bool)
+        wanted = [self.acquired.get(one, 0) for one in table.track_id.tolist()]
+        return np.asarray(table.hits) < np.array(wanted, dtype=int)
 
     def _relative(
         self, own: Pose, time_s: np.ndarray, mean: np.ndarray, covariance: np.ndarray
@@ -678,9 +690,10 @@ class Session:
         for watcher in self.watchers:
             picture |= watcher.picture(self)
         for values in tracks:
-            if values["hits"] < self._acquired.get(values["track_id"], 0):
-                values["status"] = "tentative"
-                values.pop("cpa", None)
+            values["manual"] = values["track_id"] in self.acquired
+            seen_s = self.shown.seen_s(values["track_id"])
+            if seen_s is not None:
+                values["first_s"], values["age_s"] = seen_s[0], values["time_s"] - seen_s[1]
             values["history"] = list(self._history.get(values["track_id"], ()))
         return json_lines.finite_only(picture) | {"tracks": tracks}
 
@@ -816,7 +829,7 @@ class Session:
             "tracker": _text(self.tracker.save()),
             "heard": self.tracker.heard,
             "alarms": self.watchers[0].alarms.save(),
-            "acquired": list(self._acquired.items()),
+            "acquired": list(self.acquired.items()),
             "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
         }
 
@@ -831,7 +844,7 @@ class Session:
             if state["origin_deg"] is not None:
                 self._set_origin(*map(float, state["origin_deg"]))
             self.watchers[0].alarms.restore(state["alarms"])
-            self._acquired = {int(one): int(hits) for one, hits in state.get("acquired", ())}
+            self.acquired = {int(one): int(hits) for one, hits in state.get("acquired", ())}
             self.time_s = float(state["time_s"])
             for name, text in state["outputs"].items():
                 if name in self.outputs:
@@ -901,7 +914,7 @@ class Session:
         if track_id > 0 and track_id not in known:
             table = self.tracker.table()
             hits = int(table.hits[table.track_id == track_id].sum())
-            self._acquired[track_id] = hits + _HITS_OF_ACQUIRED
+            self.acquired[track_id] = hits + _HITS_OF_ACQUIRED
         return _answer(track_id > 0, "there is no room for another track") | {"track_id": track_id}
 
     # ------------------------------------------------------------------ places

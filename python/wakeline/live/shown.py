@@ -8,6 +8,11 @@ import numpy as np
 
 from wakeline.track import TrackTable
 
+_COLUMNS = (
+    *("_ids", "_time_s", "_mean", "_covariance", "_coasting", "_acquiring"),
+    *("_first_s", "_seen_s", "_hits"),
+)
+
 
 class Shown:
     """Columns of the shown tracks, for outputs that report all of them.
@@ -23,7 +28,9 @@ class Shown:
         self._ids = np.zeros(64, dtype=np.int64)
         self._time_s, self._mean = np.zeros(64), np.zeros((64, 4))
         self._covariance = np.zeros((64, 4, 4))
-        self._coasting = np.zeros(64, dtype=bool)
+        self._coasting, self._acquiring = np.zeros(64, dtype=bool), np.zeros(64, dtype=bool)
+        self._first_s, self._seen_s = np.zeros(64), np.zeros(64)
+        self._hits = np.zeros(64, dtype=np.int64)
         self.names: list[str] = []
 
     def __len__(self) -> int:
@@ -54,11 +61,27 @@ class Shown:
         """(k,)"""
         return self._coasting[: len(self)]
 
-    def take(self, table: TrackTable, rows: np.ndarray) -> None:
+    @property
+    def acquiring(self) -> np.ndarray:
+        """(k,) Whether the operator has acquired it and its motion is not known yet."""
+        return self._acquiring[: len(self)]
+
+    def seen_s(self, track_id: int) -> tuple[float, float] | None:
+        """When a track was first shown, and its last echo; None of one that is not shown."""
+        row = self._row.get(track_id)
+        return None if row is None else (float(self._first_s[row]), float(self._seen_s[row]))
+
+    def take(self, table: TrackTable, rows: np.ndarray, acquiring: np.ndarray) -> None:
         """Add tracks of a table, or replace them by their update."""
+        known = len(self)
         at = np.array([self._at(one) for one in table.track_id[rows].tolist()], dtype=np.int64)
+        hits, time_s, is_new = table.hits[rows], table.time_s[rows], at >= known
+        self._first_s[at[is_new]] = time_s[is_new]
+        seen = is_new | (hits != self._hits[at])
+        self._seen_s[at[seen]] = time_s[seen]
+        self._hits[at], self._acquiring[at] = hits, acquiring[rows]
         status, name = table.status, table.name
-        self._ids[at], self._time_s[at] = table.track_id[rows], table.time_s[rows]
+        self._ids[at], self._time_s[at] = table.track_id[rows], time_s
         self._mean[at], self._covariance[at] = table.mean[rows], table.covariance[rows]
         self._coasting[at] = [status[row] == "coasting" for row in rows.tolist()]
         for place, row in zip(at.tolist(), rows.tolist(), strict=True):
@@ -88,10 +111,9 @@ class Shown:
                 for column in self._columns():
                     column[row] = column[last]
 
-    def _columns(self) -> tuple[np.ndarray, ...]:
-        return self._ids, self._time_s, self._mean, self._covariance, self._coasting
+    def _columns(self) -> list[np.ndarray]:
+        return [getattr(self, name) for name in _COLUMNS]
 
     def _grow(self) -> None:
-        self._ids, self._time_s, self._mean, self._covariance, self._coasting = (
-            np.concatenate([column, np.zeros_like(column)]) for column in self._columns()
-        )
+        for name, column in zip(_COLUMNS, self._columns(), strict=True):
+            setattr(self, name, np.concatenate([column, np.zeros_like(column)]))

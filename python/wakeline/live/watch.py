@@ -115,7 +115,7 @@ class AlarmWatcher(AlarmBoard):
                 track_id=table.track_id,
                 mean=table.mean,
                 covariance=table.covariance,
-                status=table.status,
+                status=np.where(session.is_acquiring(table), "tentative", table.status),
                 name=list(names),
             ),
             own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
