@@ -428,6 +428,98 @@ def test_signal_k_guard_zones_notifications_and_errors(server, harbor):
     with_client(server, work)
 
 
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [
+        (
+            {"value": -30, "endValue": 90, "units": "deg"},
+            {"value": -math.pi / 6},
+        ),
+        ({"startDistance": 1, "endDistance": 2, "units": "nm"}, {"endDistance": 3704.0}),
+        ({"endDistance": 2, "units": "km"}, {"endDistance": 2000.0}),
+        ({"value": 1.0, "units": "rad"}, {"value": 1.0}),
+        ({"value": 170, "endValue": 190, "units": "deg"}, None),
+        ({"value": 170}, None),
+        ({"endDistance": 60, "units": "nm"}, None),
+        ({"endDistance": 5, "units": "kn"}, None),
+        ({"units": ["deg"]}, None),
+        ({"value": "1"}, None),
+        ({"value": True}, None),
+        ({"startDistance": -1.0}, None),
+    ],
+)
+def test_a_guard_zone_is_set_in_the_units_that_it_names_within_its_limits(server, given, wanted):
+    zone = {"enabled": True, "value": -0.5, "endValue": 0.5}
+    zone |= {"startDistance": 0.0, "endDistance": 900.0}
+
+    async def work(client, url):
+        control = f"{url}{BASE}/A/controls/guardZone1"
+        async with client.put(control, json=zone) as answer:
+            assert answer.status == 200
+        async with client.put(control, json=given) as answer:
+            assert answer.status == (200 if wanted else 400)
+            assert wanted or (await answer.json())["error"]
+        async with client.get(control) as answer:
+            now = await answer.json()
+        assert {key: now[key] for key in wanted or zone} == pytest.approx(wanted or zone)
+
+    with_client(server, work)
+
+
+@pytest.mark.parametrize("distance", ["-2000", "0", "1e9", "Infinity", "null", "true", "1" * 400])
+def test_no_target_is_acquired_at_an_impossible_place(server, harbor, distance):
+    async def work(client, url):
+        body = f'{{"bearing": -7.0, "distance": {distance}}}'
+        async with client.post(f"{url}{BASE}/A/targets", data=body) as answer:
+            assert answer.status == 400
+            assert "distance" in (await answer.json())["error"]
+        assert not harbor.commands
+
+    with_client(server, work)
+
+
+def test_each_subscription_has_its_period(server, harbor):
+    harbor.add(1, 0.0, 500.0, vnorth_mps=5.0)
+    wanted = {
+        "radars.A.targets.1": {"period": 1000},
+        "radars.*.targets.1": {"policy": "instant"},
+        "radars.A.targets.*": {"policy": "instant", "minPeriod": 60000},
+        "radars.A.controls.guardZone1": {"policy": "ideal", "period": 700},
+        "radars.A.controls.guardZone2": {"policy": "instant"},
+    }
+
+    async def count(client, url, paths):
+        times = []
+        async with client.ws_connect(url + "/signalk/v1/stream?subscribe=none") as stream:
+            subscribe = [{"path": path} | wanted[path] for path in paths]
+            await stream.send_json({"context": "vessels.self", "subscribe": subscribe})
+            end_s = time.monotonic() + 1.6
+            while (left_s := end_s - time.monotonic()) > 0.0:
+                try:
+                    delta = await stream.receive_json(timeout=left_s)
+                except asyncio.TimeoutError:
+                    break
+                values = delta.get("updates", [{}])[0].get("values", ())
+                times += [one["path"] for one in values]
+        return len(times)
+
+    async def move():
+        while True:
+            harbor.tracks[1]["north_m"] += 1.0
+            await asyncio.sleep(0.05)
+
+    async def work(client, url):
+        moving = asyncio.ensure_future(move())
+        counts = await asyncio.gather(*(count(client, url, [path]) for path in wanted))
+        moving.cancel()
+        by_second, instant, by_minute, repeated, once = counts
+        assert 1 <= by_second <= 2 < instant
+        assert by_minute == once == 1
+        assert 2 <= repeated <= 3
+
+    with_client(server, work)
+
+
 def fields_of(octets):
     """Numbers and values of the fields of a protocol-buffers message."""
 

@@ -10,8 +10,10 @@ import json
 import math
 import re
 import struct
+import time
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime, timezone
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
@@ -20,6 +22,8 @@ import numpy as np
 from aiohttp import web
 
 from wakeline import __version__
+from wakeline._brief import quoted
+from wakeline._units import NAUTICAL_MILE_M
 
 from ..alarms import notification
 from .echoes import EchoReader
@@ -31,11 +35,19 @@ VERSION = "3.4.0"
 _BASE = "/signalk/v2/api/vessels/self/radars"
 _SELF = "vessels.self"
 _LOST_S = 10.0  # a lost target is reported as lost before it is deleted
-_MOST_PATTERNS = 64
+_MOST_PATTERNS, _LONGEST_PATTERN = 64, 200
+_PERIOD_S, _SHORTEST_S = 1.0, 0.25  # of a subscription that names none; that of pictures
 _ZONES = ("guardZone1", "guardZone2")
 _SPOKE_S = 0.04
+_LATER_S = 0.001  # than a time, so that it has passed
 _TURN_RAD = 2.0 * math.pi
 _LEVELS = 16
+_ANGLES, _DISTANCES = ("value", "endValue"), ("startDistance", "endDistance")
+_ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180.0}
+_DISTANCE_UNITS = {"m": 1.0, "km": 1000.0, "nm": NAUTICAL_MILE_M}
+_FARTHEST_ZONE_M = 1e5
+_ROUNDING = 1e-3  # of limits by clients, rad and m
+_NEAREST_TARGET_M, _FARTHEST_TARGET_M = 1.0, 4e5
 
 
 class SignalK:
@@ -89,7 +101,7 @@ class SignalK:
             self._first_seen.clear()
         now = {track["track_id"]: self._target(track) for track in picture["tracks"]}
         for track in before["tracks"]:
-            if track["track_id"] not in now and time_s >= before["time_s"]:
+            if track["track_id"] not in now and 0.0 <= time_s - before["time_s"] <= _LOST_S:
                 last = self._target(track) | {"status": "lost"}
                 self._lost[track["track_id"]] = (time_s, last)
         for track_id, (since_s, last) in list(self._lost.items()):
@@ -131,7 +143,8 @@ class SignalK:
     def _target(self, track: Mapping[str, Any]) -> dict[str, Any]:
         own, track_id = self._picture.get("own"), track["track_id"]
         time_s = track.get("time_s", self._picture["time_s"])
-        first_s = self._first_seen.setdefault(track_id, time_s)
+        seen_s = time_s - (track.get("age_s") or 0.0)
+        first_s = track.get("first_s", self._first_seen.setdefault(track_id, seen_s))
         acquiring = track.get("status") in ("tentative", "held")
         position: dict[str, Any] = {}
         if own is not None and not own.get("lost"):
@@ -148,7 +161,7 @@ class SignalK:
             "position": position,
             "acquisition": "manual" if track.get("manual") else "auto",
             "firstSeen": _iso(first_s),
-            "lastSeen": _iso(time_s - (track.get("age_s") or 0.0)),
+            "lastSeen": _iso(seen_s),
         }
         if not acquiring:
             course_rad = math.atan2(track["veast_mps"], track["vnorth_mps"]) % _TURN_RAD
@@ -274,7 +287,10 @@ class SignalK:
     async def _set_zone(self, name: str, value: Mapping[str, Any]) -> dict[str, Any]:
         if name not in _ZONES:
             return {"ok": False, "error": "no control has that name"}
-        now = self._zone_controls()[name] | dict(value)
+        try:
+            now = self._zone_controls()[name] | _in_si(value)
+        except ValueError as error:
+            return {"ok": False, "error": str(error)}
         zone_id = self._zone_ids.get(name, 0)
         if not now.get("enabled"):
             if not zone_id:
@@ -304,15 +320,18 @@ class SignalK:
         await self._fresh()
         self._radar(request)
         own, wanted = self._picture.get("own"), await _json_of(request)
-        place = [wanted.get("bearing"), wanted.get("distance")]
-        if not all(isinstance(v, (int, float)) and math.isfinite(v) for v in place):
-            raise _error(web.HTTPBadRequest, "wanted bearing (rad) and distance (m)")
+        bearing_rad, distance_m = _number(wanted.get("bearing")), _number(wanted.get("distance"))
+        if bearing_rad is None:
+            raise _error(web.HTTPBadRequest, "wanted bearing, rad")
+        if distance_m is None or not _NEAREST_TARGET_M <= distance_m <= _FARTHEST_TARGET_M:
+            limits = f"from {_NEAREST_TARGET_M:g} to {_FARTHEST_TARGET_M:g} m"
+            raise _error(web.HTTPBadRequest, f"wanted distance {limits}")
         if own is None or own.get("lost"):
             raise _error(web.HTTPConflict, "own ship's position is unknown")
         command = {
             "command": "acquire",
-            "north_m": own["north_m"] + place[1] * math.cos(place[0]),
-            "east_m": own["east_m"] + place[1] * math.sin(place[0]),
+            "north_m": own["north_m"] + distance_m * math.cos(bearing_rad),
+            "east_m": own["east_m"] + distance_m * math.sin(bearing_rad),
         }
         return _answered(await self._server.command(command))
 
@@ -328,11 +347,12 @@ class SignalK:
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         stream = await self._server.open_stream(request)
-        subscribe = request.query.get("subscribe", "self")
-        patterns = [] if subscribe == "none" else ["*"]
-        begun = asyncio.Event()
-        state = {"version": 0}
+        subscriptions: dict[str, _Subscription] = {}
+        asked = asyncio.Event()
         await self._fresh()
+        if request.query.get("subscribe", "self") != "none":
+            cached = request.query.get("sendCachedValues") != "false"
+            subscriptions["*"] = _Subscription("*", version=0 if cached else self._version)
         hello = {
             "name": "wakeline",
             "version": VERSION,
@@ -342,20 +362,20 @@ class SignalK:
         }
         await stream.send_json(hello)
         await stream.send_json(self._delta(meta=self._meta()))
-        if patterns:
-            begun.set()
-            if request.query.get("sendCachedValues") == "false":
-                state["version"] = self._version
 
         async def send() -> None:
-            await begun.wait()
             while True:
                 changed = self._changed
-                values = list(self._since(state["version"], patterns))
-                state["version"] = self._version
+                asked.clear()
+                values: dict[str, Any] = {}
+                for one in subscriptions.values():
+                    values |= self._due(one)
                 if values:
-                    await stream.send_json(self._delta(values=values))
-                await changed.wait()
+                    rows = [{"path": path, "value": value} for path, value in values.items()]
+                    await stream.send_json(self._delta(values=rows))
+                now_s = time.monotonic()
+                waits_s = [one.wait_s(now_s) for one in subscriptions.values()]
+                await _first_of(changed, asked, within_s=min(waits_s, default=math.inf))
 
         async def receive(text: str) -> None:
             try:
@@ -364,13 +384,14 @@ class SignalK:
                 return
             if not isinstance(message, dict):
                 return
-            for pattern in _patterns(message.get("unsubscribe") or message.get("desubscribe")):
-                patterns[:] = [] if pattern == "*" else [p for p in patterns if p != pattern]
-            for pattern in _patterns(message.get("subscribe")):
-                if pattern not in patterns and len(patterns) < _MOST_PATTERNS:
-                    patterns.append(pattern)
-                    state["version"] = 0
-                    begun.set()
+            for one in _subscriptions(message.get("unsubscribe") or message.get("desubscribe")):
+                if one.pattern == "*":
+                    subscriptions.clear()
+                subscriptions.pop(one.pattern, None)
+            for one in _subscriptions(message.get("subscribe")):
+                if one.pattern in subscriptions or len(subscriptions) < _MOST_PATTERNS:
+                    subscriptions[one.pattern] = one
+            asked.set()
             path, value = message.get("path"), message.get("value")
             if isinstance(path, str) and isinstance(value, dict):
                 await self._set_zone(path.rsplit(".", 1)[-1], value)
@@ -378,14 +399,21 @@ class SignalK:
         await self._server.run_stream(stream, send, receive)
         return stream
 
-    def _since(self, version: int, patterns: list[str]) -> Iterable[dict[str, Any]]:
-        for path, value in self._values.items():
-            if self._versions[path] > version and any(fnmatchcase(path, p) for p in patterns):
-                yield {"path": path, "value": value}
-        if version:
-            for when, path in self._deleted:
-                if when > version and any(fnmatchcase(path, p) for p in patterns):
-                    yield {"path": path, "value": None}
+    def _due(self, one: _Subscription) -> dict[str, Any]:
+        """Values by path that a subscription is to be sent now."""
+        passed_s = time.monotonic() - one.sent_s
+        if passed_s < one.least_s:
+            return {}
+        since = 0 if passed_s > one.repeat_s else one.version
+        values = {k: v for k, v in self._values.items() if self._versions[k] > since}
+        for when, path in self._deleted if one.version else ():
+            if when > one.version and path not in self._values:
+                values[path] = None
+        values = {path: value for path, value in values.items() if fnmatchcase(path, one.pattern)}
+        one.version = self._version
+        if values:
+            one.sent_s = time.monotonic()
+        return values
 
     def _meta(self) -> list[dict[str, Any]]:
         return [
@@ -452,6 +480,38 @@ def _varint(value: int) -> bytes:
     return bytes(octets)
 
 
+def _in_si(value: Mapping[str, Any]) -> dict[str, Any]:
+    """What a client sets of a zone, in radians and metres; its units are of angles or distances.
+
+    Raises
+    ------
+    ValueError
+        When a value has unknown units, is not a number or is out of range.
+    """
+    units = value.get("units", "rad")
+    if not isinstance(units, str) or units not in _ANGLE_UNITS | _DISTANCE_UNITS:
+        known = ", ".join(_ANGLE_UNITS | _DISTANCE_UNITS)
+        raise ValueError(f"units of a zone must be one of {known}, got {quoted(units)}")
+    si: dict[str, Any] = {}
+    if "enabled" in value:
+        if not isinstance(value["enabled"], bool):
+            raise ValueError(f"enabled must be true or false, got {quoted(value['enabled'])}")
+        si["enabled"] = value["enabled"]
+    for names, factors, least, most, unit in (
+        (_ANGLES, _ANGLE_UNITS, -math.pi, math.pi, "rad"),
+        (_DISTANCES, _DISTANCE_UNITS, 0.0, _FARTHEST_ZONE_M, "m"),
+    ):
+        for name in names:
+            if name not in value:
+                continue
+            number = _number(value[name])
+            si[name] = math.nan if number is None else number * factors.get(units, 1.0)
+            if not least - _ROUNDING <= si[name] <= most + _ROUNDING:
+                limits = f"from {least:.6g} to {most:.6g} {unit}"
+                raise ValueError(f"{name} must be {limits}, got {quoted(value[name])} {units}")
+    return si
+
+
 def _zone_schema(k: int) -> dict[str, Any]:
     return {
         "id": 16 + k,
@@ -462,7 +522,7 @@ def _zone_schema(k: int) -> dict[str, Any]:
         "hasEnabled": True,
         "minValue": -math.pi,
         "maxValue": math.pi,
-        "maxDistance": 100000.0,
+        "maxDistance": _FARTHEST_ZONE_M,
         "units": "rad",
     }
 
@@ -473,11 +533,75 @@ def _color(level: int) -> str:
     return f"#{red:02x}{green:02x}{blue:02x}{255 if level else 0:02x}"
 
 
-def _patterns(wanted: Any) -> list[str]:
-    if not isinstance(wanted, list):
-        return []
-    paths = [one.get("path") for one in wanted[:_MOST_PATTERNS] if isinstance(one, dict)]
-    return [path for path in paths if isinstance(path, str) and len(path) <= 200]
+def _number(value: Any) -> float | None:
+    """A finite number; None for what is none."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    return float(value) if abs(value) < 1e300 else None
+
+
+@dataclass
+class _Subscription:
+    """Paths that a client wants, how often, and what of them it has.
+
+    Attributes
+    ----------
+    pattern : str
+    least_s, repeat_s : float
+        Between messages at least, and after which what has not changed is sent again.
+    version : int
+    sent_s : float
+    """
+
+    pattern: str
+    least_s: float = 0.0
+    repeat_s: float = math.inf
+    version: int = 0
+    sent_s: float = -math.inf
+
+    @classmethod
+    def of(cls, wanted: Any) -> _Subscription | None:
+        """As a client asks for it; None of what is none.
+
+        The policy is "instant", not within `minPeriod`, "ideal", the same and again after `period`,
+        or "fixed", every `period`; without one "fixed" if there is a `period`.
+        """
+        path = wanted.get("path") if isinstance(wanted, dict) else None
+        if not isinstance(path, str) or len(path) > _LONGEST_PATTERN:
+            return None
+        period_s, least_s = (_seconds(wanted.get(name)) for name in ("period", "minPeriod"))
+        policy = wanted.get("policy", "instant" if period_s is None else "fixed")
+        period_s = _PERIOD_S if period_s is None else max(period_s, _SHORTEST_S)
+        if policy == "fixed":
+            return cls(path, period_s, period_s)
+        return cls(path, least_s or 0.0, period_s if policy == "ideal" else math.inf)
+
+    def wait_s(self, now_s: float) -> float:
+        """Time until something may be due that has not changed since."""
+        due_s = (self.sent_s + self.least_s - now_s, self.sent_s + self.repeat_s - now_s)
+        return min((one_s for one_s in due_s if one_s >= 0.0), default=math.inf)
+
+
+def _subscriptions(wanted: Any) -> list[_Subscription]:
+    found = map(_Subscription.of, wanted[:_MOST_PATTERNS] if isinstance(wanted, list) else ())
+    return [one for one in found if one is not None]
+
+
+def _seconds(value: Any) -> float | None:
+    """Of a time in ms; None of what is none."""
+    number = _number(value)
+    return None if number is None or number < 0.0 else number / 1000.0
+
+
+async def _first_of(*events: asyncio.Event, within_s: float) -> None:
+    """Wait until one of them is set, or so long."""
+    waits = [asyncio.ensure_future(event.wait()) for event in events]
+    try:
+        timeout_s = within_s + _LATER_S if math.isfinite(within_s) else None
+        await asyncio.wait(waits, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for one in waits:
+            one.cancel()
 
 
 def _slug(name: str, k: int) -> str:
