@@ -7,6 +7,8 @@ import math
 import re
 import shutil
 import subprocess
+from functools import reduce
+from operator import xor
 from pathlib import Path
 
 import numpy as np
@@ -914,6 +916,25 @@ def test_no_json_is_fatal(line):
     session = wl.live.Session({"tracker": SMALL})
     session.feed(0.0, "x", json.dumps(line).encode())
     json.dumps(session.picture(), allow_nan=False)
+
+
+@pytest.mark.parametrize(("mmsi", "kind"), [(2111111, 4), (2111111, 1), (211000001, 1)])
+def test_an_identity_of_ais_has_nine_digits_and_a_base_station_is_no_target(mmsi, kind):
+    pyais = pytest.importorskip("pyais")
+    session = wl.live.Session({"own": {"place_deg": [54.3, 10.2]}})
+    lines = written(session)
+    values = {"type": kind, "mmsi": mmsi, "lat": 54.31, "lon": 10.2, "speed": 0.0, "course": 0.0}
+    body = pyais.encode_dict(values)[0][1:].partition("*")[0].replace("VDO", "VDM")
+    sentence = f"!{body}*{reduce(xor, body.encode()):02X}"
+    for t in range(0, 60, 10):
+        session.feed(float(t), "ais", f"{sentence}\r\n".encode())
+        session.feed(t + 5.0, "clock", b"")
+    picture, identity = session.picture(), f"{mmsi:09d}"
+    assert [one["identity"] for one in picture["ais"]] == [identity]
+    identities = [] if kind == 4 else [identity]
+    assert [one["identity"] for one in picture["tracks"]] == identities
+    rows = [json.loads(line) for line in lines]
+    assert {row["identity"] for row in rows if row.get("identity")} == set(identities)
 
 
 def test_rubbish_is_counted_and_named():

@@ -22,6 +22,7 @@ FORGET_S = 900.0
 _GROUP = re.compile(rb"\\(?:[^\\*]*,)?g:(\d+)-(\d+)-(\d+)")
 _POSITION_TYPES = (1, 2, 3, 4, 18, 19, 27)
 _CLASS_B = (18, 19, 24)
+_BASE_STATION = 4
 _OFTEN = 2  # so many stated times in a row must fit how far a vessel has moved
 _SLOW_MPS = 2.0  # too slow to tell times by how far a vessel has moved
 
@@ -151,6 +152,8 @@ class AisVessel:
     to_bow_m, to_stern_m, to_port_m, to_starboard_m : float
         From the reference of its position.
     is_class_b : bool
+    is_fixed : bool
+        Whether it is a base station or an aid to navigation.
     messages : int
     """
 
@@ -173,7 +176,13 @@ class AisVessel:
     to_port_m: float = math.nan
     to_starboard_m: float = math.nan
     is_class_b: bool = False
+    is_fixed: bool = False
     messages: int = 0
+
+    @property
+    def identity(self) -> str:
+        """Its MMSI, nine digits."""
+        return f"{self.mmsi:09d}"
 
     @property
     def position_std_m(self) -> float:
@@ -191,8 +200,8 @@ class AisVessel:
         return forward_m * cos - starboard_m * sin, forward_m * sin + starboard_m * cos
 
     def as_dict(self) -> dict[str, Any]:
-        """Its values by name."""
-        return asdict(self)
+        """Its values by name, and its identity."""
+        return asdict(self) | {"identity": self.identity}
 
 
 def decoded(sentences: tuple[bytes, ...]) -> Any:
@@ -243,6 +252,7 @@ class AisPicture:
             _take_static(vessel, message)
         if kind not in _POSITION_TYPES:
             return vessel, False
+        vessel.is_fixed = kind == _BASE_STATION
         stated_s = self._clock(time_s, getattr(message, "second", None))
         return vessel, _take_position(vessel, time_s, stated_s, message)
 

@@ -265,8 +265,8 @@ class Session:
             self._report_vessel(vessel)
 
     def _report_vessel(self, vessel: AisVessel) -> None:
-        """Give the position of a vessel to the tracker."""
-        if self.plane is None:
+        """Give the position of a vessel to the tracker; what is fixed is shown alone."""
+        if self.plane is None or vessel.is_fixed:
             return
         north_m, east_m = self.to_plane(vessel.latitude_deg, vessel.longitude_deg)
         to_middle = vessel.to_middle_m
@@ -274,7 +274,7 @@ class Session:
         speed, course = vessel.speed_mps, vessel.course_rad
         self._report(
             source="ais",
-            identity=str(vessel.mmsi),
+            identity=vessel.identity,
             time_s=vessel.time_s,
             north_m=north_m,
             east_m=east_m,
@@ -577,7 +577,7 @@ class Session:
         if name or not identity.isdecimal():
             return name
         vessel = self.ais.vessels.get(int(identity))
-        return vessel.name if vessel is not None else ""
+        return vessel.name if vessel is not None and vessel.identity == identity else ""
 
     def disagreements(self) -> list[tuple[int, str, str]]:
         """Tracks whose reports are not where their echoes are: number, identity, and what is so."""
@@ -680,7 +680,7 @@ class Session:
             "note": self.note,
             "radars": [self._radar_picture(name, time_s) for name in self.radars],
             "ais": [
-                self._vessel_picture(vessel, time_s) | {"track_id": track_of.get(str(vessel.mmsi))}
+                self._vessel_picture(vessel, time_s) | {"track_id": track_of.get(vessel.identity)}
                 for vessel in self.ais.vessels.values()
             ],
             "alarms": [],

@@ -14,6 +14,7 @@ from .problems import Problems
 HOW_TO_GET = "Signal K needs aiohttp: pip install 'wakeline[live]'"
 _MMSI = re.compile(r"mmsi:(\d{9})$")
 _OWN = ("vessels.self", "self", "")
+_FIXED = ("atons.", "shore.")
 _LONGEST = 4 << 20
 _PER_TURN = "spokesPerRevolution"
 _WANTED = {
@@ -57,6 +58,7 @@ class SignalkDecoder:
         if mmsi is not None:
             vessel = _vessel(values)
             if vessel:
+                vessel["is_fixed"] = context.startswith(_FIXED)
                 yield VesselReading(int(mmsi[1]), vessel)
 
     def _own_readings(self, values: list[tuple[str, Any]]) -> Iterator[OwnReading]:

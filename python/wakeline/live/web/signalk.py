@@ -504,11 +504,11 @@ def _in_si(value: Mapping[str, Any]) -> dict[str, Any]:
         for name in names:
             if name not in value:
                 continue
-            number = _number(value[name])
-            si[name] = math.nan if number is None else number * factors.get(units, 1.0)
+            given, number = units if units in factors else unit, _number(value[name])
+            si[name] = math.nan if number is None else number * factors[given]
             if not least - _ROUNDING <= si[name] <= most + _ROUNDING:
                 limits = f"from {least:.6g} to {most:.6g} {unit}"
-                raise ValueError(f"{name} must be {limits}, got {quoted(value[name])} {units}")
+                raise ValueError(f"{name} must be {limits}, got {quoted(value[name])} {given}")
     return si
 
 
