@@ -195,6 +195,50 @@ def test_a_sector_keeps_its_state_without_own_ship():
     assert ended(alarms.update(2.0, table({1: (9e3, 0.0)}), own=[0, 0, 0, 0]), "zone entry")
 
 
+def test_alarms_that_last_have_the_new_name_of_their_zone():
+    triggers = ("entry", "exit", "occupancy")
+    zone = Zone(name="60 s", outline_m=SQUARE, triggers=triggers, occupancy_s=5.0)
+    alarms = Alarms(zones=[zone, Zone(name="other", outline_m=SQUARE)], config=QUIET)
+    names = ["60 s", "60 s"]
+    for t in (0.0, 6.0):
+        alarms.update(t, table({1: (50.0, 50.0), 2: (50.0, 50.0)}, names=names))
+    alarms.update(7.0, table({1: (50.0, 50.0), 2: (900.0, 50.0)}, names=names))
+    before = {one.alarm_id: one.text for one in alarms.active}
+    alarms.set_zone({**alarms.zones[1].as_dict(), "name": "harbor"})
+    for one in alarms.list():
+        if one["zone_id"] == 1 and one["state"] != "ended":
+            assert "harbor" in one["text"]
+            assert "60 s (" in one["text"]
+            assert one["text"].replace("harbor", "60 s") == before[one["alarm_id"]]
+    assert {one.kind for one in alarms.active if "harbor" in one.text} == {
+        "zone entry", "zone occupancy", "zone exit",
+    }  # fmt: skip
+    assert [one.text for one in alarms.active if one.zone_id == 2] == ["60 s (1) is inside other"]
+
+
+@pytest.mark.parametrize("later_s", [1.0, 100.0])
+def test_an_alarm_keeps_its_number_over_a_restart_and_a_later_one_has_another(later_s):
+    alarms = Alarms(zones=[Zone(outline_m=SQUARE)], config=QUIET)
+    alarms.update(0.0, table({}))
+    inside = table({1: (50.0, 50.0)})
+    alarms.update(1.0, inside)
+    sensors = [("radar A", 99.0, 10.0)]
+    alarms.update(2.0, inside, sensors=sensors)
+    alarms.acknowledge(1)
+    again = Alarms(config=QUIET)
+    again.restore(json.loads(json.dumps(alarms.save())))
+    again.update(10.0, table({}))
+    again.update(10.0 + later_s, inside, sensors=sensors)
+    numbers = {one.kind: one.alarm_id for one in again.active}
+    acknowledged = {one.kind: one.acknowledged for one in again.active}
+    if later_s < 10.0:
+        assert numbers == {"zone entry": 1, "sensor lost": 2}
+        assert acknowledged == {"zone entry": True, "sensor lost": False}
+    else:
+        assert sorted(numbers.values()) == [3, 4]
+        assert not any(acknowledged.values())
+
+
 def test_deleting_a_zone_ends_its_alarms():
     alarms = Alarms(zones=[Zone(outline_m=SQUARE)], config=QUIET)
     alarms.update(0.0, table({1: (50.0, 50.0)}))

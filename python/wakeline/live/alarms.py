@@ -48,6 +48,7 @@ _PAIR_S = 6e-6  # between looks at close passings, times the square of the numbe
 _MOST_ENDED = 200
 _OUTAGE_S = 30.0  # after a longer one of a radar its targets have other numbers
 _MOST_TARGET_ALARMS = 50
+_RESTART_S = 30.0  # after a restart an alarm of before keeps its number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,12 +204,6 @@ class _Shown:
     gone_s: float = math.inf  # when it vanished while a radar was silent
 
 
-@dataclass
-class _Momentary:
-    alarm: Alarm
-    key: tuple[int, ...]
-
-
 class Alarms:
     """Decides the alarms of a session.
 
@@ -248,7 +243,10 @@ class Alarms:
         self._next_id = 1
         self._encounters: dict[int, Alarm] = {}
         self._stays: dict[tuple[int, int, str], Alarm] = {}
-        self._momentary: list[_Momentary] = []
+        self._around: dict[int, tuple[str, str]] = {}  # the name of the zone in texts, by alarm
+        self._saved: dict[tuple, tuple[int, float, bool]] = {}  # that lasted before a restart
+        self._restart_s = math.inf
+        self._momentary: list[Alarm] = []
         self._sensors: dict[str, _Held] = {}
         self._identities: dict[tuple[int, str], _Held] = {}
         self._tracks: dict[int, _Shown] = {}
@@ -319,6 +317,9 @@ class Alarms:
             All changes since the last call, the operator's included.
         """
         self.time_s = time_s = max(time_s, self.time_s)
+        self._restart_s = min(time_s, self._restart_s)
+        if time_s - self._restart_s > _RESTART_S:
+            self._saved.clear()
         shown = np.isin(np.asarray(tracks.status, dtype=str), _SHOWN)
         track_id = np.asarray(tracks.track_id, dtype=np.int64)[shown]
         mean = np.asarray(tracks.mean, dtype=float).reshape(-1, 4)[shown]
@@ -330,7 +331,7 @@ class Alarms:
         track_id, mean, covariance = track_id[known], mean[known], covariance[known]
 
         lasts_s = self.config.momentary_s
-        self._end_momentary("time over", lambda one: time_s - one.alarm.begin_s >= lasts_s)
+        self._end_momentary("time over", lambda one: time_s - one.begin_s >= lasts_s)
         self._pass_targets(now, events, is_blind)
         place = None if own is None else OwnPlace(own[0], own[2], heading_rad)
         std_m = np.sqrt(_largest_variance(covariance))
@@ -384,12 +385,12 @@ class Alarms:
         zone, track_id = crossing.zone, crossing.track_id
         who = self._called(track_id)
         if crossing.entered:
-            key = (zone.zone_id, track_id)
-            self._end_momentary("entered again", lambda one: one.key == key)
+            left = (zone.zone_id, (track_id,))
+            self._end_momentary("entered again", lambda one: (one.zone_id, one.tracks) == left)
             if "entry" in zone.triggers:
                 how = "is inside" if crossing.born_inside else "has entered"
-                self._stays[zone.zone_id, track_id, "entry"] = self._begin(
-                    "zone entry", f"{who} {how} {zone.name}", (track_id,), zone_id=zone.zone_id
+                self._stays[zone.zone_id, track_id, "entry"] = self._of_zone(
+                    self._begin, "zone entry", track_id, zone, f"{who} {how} "
                 )
             return
         for trigger in ("entry", "occupancy"):
@@ -397,24 +398,16 @@ class Alarms:
             if alarm is not None:
                 self._end(alarm, "target lost" if crossing.lost else "left")
         if "exit" in zone.triggers and not crossing.lost:
-            self._happen(
-                "zone exit",
-                f"{who} has left {zone.name}",
-                (track_id,),
-                zone_id=zone.zone_id,
-                key=(zone.zone_id, track_id),
-            )
+            self._of_zone(self._happen, "zone exit", track_id, zone, f"{who} has left ")
 
     def _pass_occupants(self) -> None:
         for zone, track_id, stay_s in self.zones.occupants(self.time_s):
             key = (zone.zone_id, track_id, "occupancy")
             long = "occupancy" in zone.triggers and stay_s >= zone.occupancy_s
             if long and key not in self._stays:
-                self._stays[key] = self._begin(
-                    "zone occupancy",
-                    f"{self._called(track_id)} in {zone.name} for {zone.occupancy_s:.0f} s",
-                    (track_id,),
-                    zone_id=zone.zone_id,
+                around = f"{self._called(track_id)} in ", f" for {zone.occupancy_s:.0f} s"
+                self._stays[key] = self._of_zone(
+                    self._begin, "zone occupancy", track_id, zone, *around
                 )
 
     def _pass_encounters(
@@ -454,6 +447,8 @@ class Alarms:
                 text = self._encounter_text(first, second)
                 alarm = self._begin("cpa", text, (first, second), **values)
                 self._encounters[number] = alarm
+                if alarm.acknowledged:
+                    self._watch.acknowledge(number)
             vars(alarm).update(values, time_s=time_s)
 
     def _encounter_text(self, first: int, second: int) -> str:
@@ -505,8 +500,13 @@ class Alarms:
     # What the operator does -----------------------------------------------------------------------
 
     def set_zone(self, zone: Zone | Mapping[str, Any]) -> Zone:
-        """Add or change a zone: :meth:`Zones.set`."""
-        return self.zones.set(zone)
+        """Add or change a zone: :meth:`Zones.set`; the alarms that last have its new name."""
+        zone = self.zones.set(zone)
+        for alarm_id, (before, after) in self._around.items():
+            alarm = self._active[alarm_id]
+            if alarm.zone_id == zone.zone_id:
+                alarm.text = f"{before}{zone.name}{after}"
+        return zone
 
     def delete_zone(self, zone_id: int) -> bool:
         """Remove a zone and end its alarms; False if none has that number."""
@@ -514,17 +514,31 @@ class Alarms:
             return False
         for key in [key for key in self._stays if key[0] == zone_id]:
             self._end(self._stays.pop(key), "zone deleted")
-        self._end_momentary("zone deleted", lambda one: one.alarm.zone_id == zone_id)
+        self._end_momentary("zone deleted", lambda one: one.zone_id == zone_id)
         return True
 
     def save(self) -> dict[str, Any]:
-        """Zones and the next number, for `restore`; what lasts begins again by itself."""
-        return {"next_id": self._next_id, "zones": self.zones.save()}
+        """Zones, numbers and what lasts, for `restore`."""
+        lasting = [one for one in self._active.values() if one not in self._momentary]
+        return {
+            "next_id": self._next_id,
+            "zones": self.zones.save(),
+            "lasting": [
+                [list(_condition(one)), one.alarm_id, one.begin_s, one.acknowledged]
+                for one in lasting
+            ],
+        }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Continue with zones that were saved."""
+        """Continue with zones that were saved; what lasted begins again with its number."""
         self._next_id = int(state["next_id"])
         self.zones.restore(state["zones"])
+        self._saved = {
+            (kind, tuple(tracks), zone_id, source): (int(alarm_id), float(begin_s), bool(known))
+            for (kind, tracks, zone_id, source), alarm_id, begin_s, known in state.get(
+                "lasting", ()
+            )
+        }
 
     def forget(self, track_id: int) -> None:
         """The operator drops this track: its end is no lost target."""
@@ -555,7 +569,7 @@ class Alarms:
         for number, one in self._encounters.items():
             if one is alarm:
                 self._watch.acknowledge(number)
-        self._end_momentary("acknowledged", lambda one: one.alarm is alarm)
+        self._end_momentary("acknowledged", lambda one: one is alarm)
 
     def _silence(self, alarm: Alarm) -> None:
         if not alarm.acknowledged:
@@ -611,33 +625,48 @@ class Alarms:
             priority = "warning"
         now_s = self.time_s
         alarm = Alarm(self._next_id, kind, priority, text, now_s, now_s, tracks, **values)
-        self._next_id += 1
+        saved = self._saved.pop(_condition(alarm), None)
+        if saved is None:
+            self._next_id += 1
+        else:
+            alarm.alarm_id, alarm.begin_s, alarm.acknowledged = saved
         self._active[alarm.alarm_id] = alarm
         self._change("began", alarm)
         return alarm
 
-    def _happen(
+    def _of_zone(
         self,
+        begin: Callable[..., Alarm],
         kind: str,
-        text: str,
-        tracks: tuple[int, ...],
-        zone_id: int = 0,
-        key: tuple[int, ...] = (),
-    ) -> None:
-        alike = [m for m in self._momentary if m.alarm.kind == kind]
-        if len(alike) >= _MOST_TARGET_ALARMS:
-            self._end(alike[0].alarm, "too many")
-            self._momentary.remove(alike[0])
-        self._momentary.append(_Momentary(self._begin(kind, text, tracks, zone_id=zone_id), key))
+        track_id: int,
+        zone: Zone,
+        before: str,
+        after: str = "",
+    ) -> Alarm:
+        """Begin an alarm whose text has the name of a zone between two others."""
+        text = f"{before}{zone.name}{after}"
+        alarm = begin(kind, text, (track_id,), zone_id=zone.zone_id)
+        self._around[alarm.alarm_id] = before, after
+        return alarm
 
-    def _end_momentary(self, reason: str, over: Callable[[_Momentary], bool]) -> None:
+    def _happen(self, kind: str, text: str, tracks: tuple[int, ...], zone_id: int = 0) -> Alarm:
+        alike = [one for one in self._momentary if one.kind == kind]
+        if len(alike) >= _MOST_TARGET_ALARMS:
+            self._end(alike[0], "too many")
+            self._momentary.remove(alike[0])
+        alarm = self._begin(kind, text, tracks, zone_id=zone_id)
+        self._momentary.append(alarm)
+        return alarm
+
+    def _end_momentary(self, reason: str, over: Callable[[Alarm], bool]) -> None:
         for one in [one for one in self._momentary if over(one)]:
-            self._end(one.alarm, reason)
+            self._end(one, reason)
             self._momentary.remove(one)
 
     def _end(self, alarm: Alarm, reason: str) -> None:
         alarm.end_s, alarm.reason = self.time_s, reason
         del self._active[alarm.alarm_id]
+        self._around.pop(alarm.alarm_id, None)
         self._ended.append(alarm)
         self._change("ended", alarm)
 
@@ -715,6 +744,11 @@ def _csv(rows: Iterable[Iterable[Any]]) -> bytes:
 
 def _rows(table: Any, *names: str) -> Iterable[tuple]:
     return zip(*(np.asarray(getattr(table, name)).tolist() for name in names), strict=True)
+
+
+def _condition(alarm: Alarm) -> tuple[str, tuple[int, ...], int, str]:
+    """What an alarm is about."""
+    return alarm.kind, alarm.tracks, alarm.zone_id, alarm.source
 
 
 def _called(track_id: int, name: str) -> str:
