@@ -466,6 +466,70 @@ def test_a_guard_zone_is_set_in_the_units_that_it_names_within_its_limits(server
     with_client(server, work)
 
 
+def test_a_control_has_its_own_zone_and_leaves_what_it_does_not_name(server, harbor):
+    harbor.add(4, 0.0, 500.0)  # ahead: the heading is east
+    zone = {"enabled": True, "value": -0.5, "endValue": 0.5}
+    zone |= {"startDistance": 0.0, "endDistance": 900.0}
+
+    async def work(client, url):
+        controls = f"{url}{BASE}/A/controls"
+        async with client.put(f"{controls}/guardZone2", json=zone) as answer:
+            assert answer.status == 200
+        async with client.get(controls) as answer:
+            shown = await answer.json()
+        assert [shown[name]["enabled"] for name in ("guardZone1", "guardZone2")] == [False, True]
+        drawn = harbor.board.alarms.zones[1].as_dict() | {"name": "pier", "triggers": ["exit"]}
+        assert harbor.command({"command": "zone", "zone": drawn})["ok"]
+        await asyncio.sleep(0.3)  # until there is another picture
+        async with client.put(f"{controls}/guardZone2", json={"endDistance": 800.0}) as answer:
+            assert answer.status == 200
+        now = harbor.board.alarms.zones[1]
+        assert (now.name, now.triggers, now.far_m) == ("pier", ("exit",), 800.0)
+        async with client.get(f"{url}{BASE}/A/targets") as answer:
+            (target,) = await answer.json()
+        assert target["sourceZone"] == 2
+
+    with_client(server, work)
+
+
+def test_targets_of_a_radar_ashore_are_seen_from_it():
+    class Shore(Harbor):
+        def picture(self):
+            radar = {"name": "A", "aboard": False, "north_m": 100.0, "east_m": 0.0}
+            return super().picture() | {"own": None, "radars": [radar]}
+
+    harbor = Shore()
+
+    async def work(client, url):
+        targets = f"{url}{BASE}/A/targets"
+        async with client.post(targets, json={"bearing": 0.0, "distance": 400.0}) as answer:
+            assert answer.status == 200
+        assert harbor.tracks[1]["north_m"] == pytest.approx(500.0)
+        async with client.get(targets) as answer:
+            (target,) = await answer.json()
+        assert target["position"]["distance"] == pytest.approx(400.0)
+
+    with WebServer(harbor, port=0) as server:
+        with_client(server, work)
+
+
+def test_octets_that_are_no_text_are_rejected(harbor):
+    with WebServer(harbor, port=0) as server:
+
+        async def put(client, url):
+            kind = {"Content-Type": "application/json; charset=nothing"}
+            async with client.post(f"{url}{BASE}/A/targets", data=b"\xff", headers=kind) as answer:
+                assert answer.status == 400
+
+        with_client(server, put)
+    with (
+        WebServer(harbor, "0.0.0.0", 0) as server,
+        socket.create_connection(("127.0.0.1", server.app.port), timeout=5.0) as client,
+    ):
+        client.sendall(b"GET / HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer \xff\r\n\r\n")
+        assert client.recv(12) == b"HTTP/1.1 403"
+
+
 @pytest.mark.parametrize("distance", ["-2000", "0", "1e9", "Infinity", "null", "true", "1" * 400])
 def test_no_target_is_acquired_at_an_impossible_place(server, harbor, distance):
     async def work(client, url):

@@ -270,7 +270,7 @@ class WebApp:
             or request.cookies.get(_COOKIE)
             or request.headers.get("Authorization", "").removeprefix("Bearer ")
         )
-        if not hmac.compare_digest(given.encode(), self.token.encode()):
+        if not hmac.compare_digest(given.encode(errors="replace"), self.token.encode()):
             return "open the address with the token that the program has printed"
         return ""
 

@@ -69,6 +69,8 @@ class SignalK:
         self._deleted: deque[tuple[int, str]] = deque(maxlen=2000)
         self._changed = asyncio.Event()
         self._zone_ids: dict[str, int] = {}
+        self._switched_on = ""  # the control whose zone is being made
+        self._inside: list[set[int]] = []  # tracks in the zone of each control
 
     def routes(self) -> list[web.RouteDef]:
         """All routes below ``/signalk``."""
@@ -99,6 +101,8 @@ class SignalK:
         if time_s < before["time_s"] - 1.0:
             self._lost.clear()
             self._first_seen.clear()
+        controls = self._zone_controls()
+        self._inside = [set((self._zone_of(name) or {}).get("inside", ())) for name in _ZONES]
         now = {track["track_id"]: self._target(track) for track in picture["tracks"]}
         for track in before["tracks"]:
             if track["track_id"] not in now and 0.0 <= time_s - before["time_s"] <= _LOST_S:
@@ -107,14 +111,14 @@ class SignalK:
         for track_id, (since_s, last) in list(self._lost.items()):
             if track_id in now or time_s - since_s > _LOST_S:
                 del self._lost[track_id]
-                self._first_seen.pop(track_id, None)
             else:
                 now[track_id] = last
+        self._first_seen = {k: v for k, v in self._first_seen.items() if k in now}
         radars = list(self._radars())
         for radar in radars[:1]:  # one tracker for all radars
             for track_id, target in now.items():
                 values[f"radars.{radar}.targets.{track_id}"] = target
-            for name, value in self._zone_controls().items():
+            for name, value in controls.items():
                 values[f"radars.{radar}.controls.{name}"] = value
             for alarm in picture.get("alarms", ()):
                 path, value = notification(radar, alarm)
@@ -141,15 +145,14 @@ class SignalK:
         return radar
 
     def _target(self, track: Mapping[str, Any]) -> dict[str, Any]:
-        own, track_id = self._picture.get("own"), track["track_id"]
+        track_id, place = track["track_id"], self._place(next(iter(self._picture["radars"]), {}))
         time_s = track.get("time_s", self._picture["time_s"])
         seen_s = time_s - (track.get("age_s") or 0.0)
         first_s = track.get("first_s", self._first_seen.setdefault(track_id, seen_s))
         acquiring = track.get("status") in ("tentative", "held")
         position: dict[str, Any] = {}
-        if own is not None and not own.get("lost"):
-            north_m = track["north_m"] - own["north_m"]
-            east_m = track["east_m"] - own["east_m"]
+        if place is not None:
+            north_m, east_m = track["north_m"] - place[0], track["east_m"] - place[1]
             position["bearing"] = round(math.atan2(east_m, north_m) % _TURN_RAD, 4)
             position["distance"] = round(math.hypot(north_m, east_m), 1)
         if track.get("latitude_deg") is not None:
@@ -168,13 +171,25 @@ class SignalK:
             speed_mps = math.hypot(track["vnorth_mps"], track["veast_mps"])
             target["motion"] = {"course": round(course_rad, 4), "speed": round(speed_mps, 2)}
         cpa = track.get("cpa")
-        if cpa and cpa.get("tcpa_s") is not None and cpa["tcpa_s"] >= 0.0:
+        known = cpa and cpa.get("cpa_m") is not None and cpa.get("tcpa_s") is not None
+        if known and cpa["tcpa_s"] >= 0.0:
             target["danger"] = {"cpa": round(cpa["cpa_m"], 1), "tcpa": round(cpa["tcpa_s"], 1)}
-        for zone in self._picture.get("zones", ()):
-            if track_id in zone.get("inside", ()):
-                target["sourceZone"] = zone["zone_id"]
-                break
+        zones = [k for k, inside in enumerate(self._inside, 1) if track_id in inside]
+        if zones and not track.get("manual"):
+            target["sourceZone"] = zones[0]
         return target
+
+    def _place(self, radar: Mapping[str, Any]) -> tuple[float, float] | None:
+        """North and east of what a radar measures from: the radar ashore, else own ship."""
+        own = self._picture.get("own")
+        if not radar.get("aboard", True) and radar.get("north_m") is not None:
+            return radar["north_m"], radar["east_m"]
+        return None if own is None or own.get("lost") else (own["north_m"], own["east_m"])
+
+    def _zone_of(self, name: str) -> Mapping[str, Any] | None:
+        """The zone of a control; None while it is off."""
+        zones = {zone["zone_id"]: zone for zone in self._picture.get("zones", ())}
+        return zones.get(self._zone_ids.get(name, 0))
 
     def _zone_controls(self) -> dict[str, Any]:
         """The first two guard zones about own ship; the second name is free while there is one."""
@@ -186,6 +201,7 @@ class SignalK:
         self._zone_ids = {k: v for k, v in self._zone_ids.items() if v in zones}
         for zone_id in zones:
             free = [name for name in _ZONES if name not in self._zone_ids]
+            free.sort(key=lambda name: name != self._switched_on)
             if free and zone_id not in self._zone_ids.values():
                 self._zone_ids[free[0]] = zone_id
         off = {"value": 0.0, "endValue": 0.0, "startDistance": 0.0, "endDistance": 0.0}
@@ -291,23 +307,25 @@ class SignalK:
             now = self._zone_controls()[name] | _in_si(value)
         except ValueError as error:
             return {"ok": False, "error": str(error)}
-        zone_id = self._zone_ids.get(name, 0)
+        before = self._zone_of(name) or {"name": f"guard zone {_ZONES.index(name) + 1}"}
         if not now.get("enabled"):
-            if not zone_id:
+            if "zone_id" not in before:
                 return {"ok": True}
-            return await self._server.command({"command": "zone_delete", "zone_id": zone_id})
-        zone = {
-            "zone_id": zone_id,
-            "name": f"guard zone {_ZONES.index(name) + 1}",
+            command = {"command": "zone_delete", "zone_id": before["zone_id"]}
+            return await self._server.command(command)
+        zone = {key: value for key, value in before.items() if key != "inside"} | {
             "near_m": now["startDistance"],
             "far_m": now["endDistance"],
             "from_rad": now["value"],
             "to_rad": now["endValue"],
             "from_bow": True,
         }
+        self._switched_on = name
         answer = await self._server.command({"command": "zone", "zone": zone})
         if answer.get("ok"):
-            self._zone_ids[name] = answer["zone"]["zone_id"]
+            zone_id = answer["zone"]["zone_id"]
+            others = {k: v for k, v in self._zone_ids.items() if v != zone_id}
+            self._zone_ids = others | {name: zone_id}
         return answer
 
     async def _targets(self, request: web.Request) -> web.Response:
@@ -318,20 +336,19 @@ class SignalK:
 
     async def _acquire(self, request: web.Request) -> web.Response:
         await self._fresh()
-        self._radar(request)
-        own, wanted = self._picture.get("own"), await _json_of(request)
+        place, wanted = self._place(self._radar(request)), await _json_of(request)
         bearing_rad, distance_m = _number(wanted.get("bearing")), _number(wanted.get("distance"))
         if bearing_rad is None:
             raise _error(web.HTTPBadRequest, "wanted bearing, rad")
         if distance_m is None or not _NEAREST_TARGET_M <= distance_m <= _FARTHEST_TARGET_M:
             limits = f"from {_NEAREST_TARGET_M:g} to {_FARTHEST_TARGET_M:g} m"
             raise _error(web.HTTPBadRequest, f"wanted distance {limits}")
-        if own is None or own.get("lost"):
+        if place is None:
             raise _error(web.HTTPConflict, "own ship's position is unknown")
         command = {
             "command": "acquire",
-            "north_m": own["north_m"] + distance_m * math.cos(bearing_rad),
-            "east_m": own["east_m"] + distance_m * math.sin(bearing_rad),
+            "north_m": place[0] + distance_m * math.cos(bearing_rad),
+            "east_m": place[1] + distance_m * math.sin(bearing_rad),
         }
         return _answered(await self._server.command(command))
 
@@ -393,8 +410,8 @@ class SignalK:
                     subscriptions[one.pattern] = one
             asked.set()
             path, value = message.get("path"), message.get("value")
-            if isinstance(path, str) and isinstance(value, dict):
-                await self._set_zone(path.rsplit(".", 1)[-1], value)
+            if isinstance(path, str) and path in self._values and isinstance(value, dict):
+                await self._set_zone(path.rpartition(".")[2], value)
 
         await self._server.run_stream(stream, send, receive)
         return stream
@@ -619,7 +636,7 @@ def _iso(time_s: float) -> str:
 
 async def _json_of(request: web.Request) -> dict[str, Any]:
     try:
-        value = json.loads(await request.text() or "{}")
+        value = json.loads(await request.read() or b"{}")
     except (ValueError, RecursionError):
         raise _error(web.HTTPBadRequest, "the body must be JSON") from None
     if not isinstance(value, dict):
