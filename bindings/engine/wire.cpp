@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -81,12 +82,22 @@ PyRecords decode(AsterixReader& reader, const py::bytes& datagram, double receiv
   return records;
 }
 
+/// A column of flags; none are set where it is not given.
+using Flags = std::optional<py::array_t<bool, py::array::c_style | py::array::forcecast>>;
+
+void set_flags(const char* name, const Flags& flags, std::span<ReportedTrack> tracks,
+               bool ReportedTrack::*flag) {
+  if (!flags) return;
+  const auto count = static_cast<py::ssize_t>(tracks.size());
+  require_shape(flags->ndim() == 1 && flags->size() == count, name, shape_text({count}), *flags);
+  for (py::ssize_t k = 0; k < count; ++k) tracks[static_cast<std::size_t>(k)].*flag = flags->at(k);
+}
+
 /// The rows of the columns that all feeds take.
 std::vector<ReportedTrack> reported(
     const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& track_id,
     const py::object& estimate_time_s, const DoubleArray& mean,
-    const std::optional<DoubleArray>& covariance,
-    const std::optional<py::array_t<bool, py::array::c_style | py::array::forcecast>>& coasting,
+    const std::optional<DoubleArray>& covariance, const Flags& acquiring,
     const py::object& turn_rate_rad_s, const py::object& age_s,
     const std::optional<std::vector<std::string>>& name) {
   require_shape(track_id.ndim() == 1, "track_id", "(k,)", track_id);
@@ -97,9 +108,6 @@ std::vector<ReportedTrack> reported(
   if (covariance)
     require_shape(covariance->ndim() == 3 && covariance->size() == 16 * count, "covariance",
                   shape_text({count, 4, 4}), *covariance);
-  if (coasting)
-    require_shape(coasting->ndim() == 1 && coasting->size() == count, "coasting",
-                  shape_text({count}), *coasting);
   if (name && static_cast<py::ssize_t>(name->size()) != count)
     throw py::value_error("name must have " + std::to_string(count) + " texts, got " +
                           std::to_string(name->size()));
@@ -109,6 +117,7 @@ std::vector<ReportedTrack> reported(
   const auto turn_rate = optional("turn_rate_rad_s", turn_rate_rad_s);
   const auto age = optional("age_s", age_s);
   std::vector<ReportedTrack> tracks(static_cast<std::size_t>(count));
+  set_flags("acquiring", acquiring, tracks, &ReportedTrack::acquiring);
   for (py::ssize_t k = 0; k < count; ++k) {
     ReportedTrack& track = tracks[static_cast<std::size_t>(k)];
     track.id = track_id.at(k);
@@ -119,7 +128,6 @@ std::vector<ReportedTrack> reported(
       track.kinematics.covariance = given;
       track.has_covariance = given.allFinite();
     }
-    if (coasting) track.coasting = coasting->at(k);
     if (turn_rate) track.turn_rate_rad_s = turn_rate->at(k);
     if (age) track.age_s = age->at(k);
     if (name) track.set_name((*name)[static_cast<std::size_t>(k)]);
@@ -210,19 +218,24 @@ ValueError
              const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& track_id,
              const py::object& estimate_time_s, const DoubleArray& mean,
              const std::optional<std::vector<std::string>>& name, const std::optional<OwnShip>& own,
-             double heading_rad) {
-            const std::vector<ReportedTrack> tracks =
-                reported(track_id, estimate_time_s, mean, std::nullopt, std::nullopt, py::none(),
+             double heading_rad, bool own_velocity_known, const Flags& acquiring,
+             const Flags& manual) {
+            std::vector<ReportedTrack> tracks =
+                reported(track_id, estimate_time_s, mean, std::nullopt, acquiring, py::none(),
                          py::none(), name);
+            set_flags("manual", manual, tracks, &ReportedTrack::manual);
             std::vector<py::bytes> sentences;
             self.update(
                 finite_time(time_s), own.value_or(OwnShip{}), heading_rad, tracks,
-                [&](std::string_view text) { sentences.emplace_back(text.data(), text.size()); });
+                [&](std::string_view text) { sentences.emplace_back(text.data(), text.size()); },
+                own_velocity_known);
             return sentences;
           },
           py::arg("time_s"), py::arg("track_id"), py::arg("estimate_time_s"), py::arg("mean"),
           py::kw_only(), py::arg("name") = py::none(), py::arg("own") = py::none(),
           py::arg("heading_rad") = std::numeric_limits<double>::quiet_NaN(),
+          py::arg("own_velocity_known") = true, py::arg("acquiring") = py::none(),
+          py::arg("manual") = py::none(),
           (std::string("The sentences that are due, each with carriage return and line feed.\n\n"
                        "Parameters\n----------\ntime_s : float\n    Now, UTC in seconds since any "
                        "midnight.") +
@@ -232,7 +245,13 @@ ValueError
 own : OwnShip, optional
     Own ship in the plane, at the origin if not given. Its position should be the fix that the receiver has.
 heading_rad : float
-    Of own ship, true; NaN when it is unknown or old (OSD then says V).)doc")
+    Of own ship, true; NaN when it is unknown or old (OSD then says V).
+own_velocity_known : bool
+    False: fields that need the velocity of own ship are empty.
+acquiring : (k,) array of bool, optional
+    Whether the operator has acquired the target and its motion is not known yet: Q, without speed, course and CPA.
+manual : (k,) array of bool, optional
+    Whether the operator has acquired it at any time: M instead of A.)doc")
               .c_str());
 }
 
@@ -295,14 +314,13 @@ void define_asterix_feed(py::module_& m, const char* name, const char* doc) {
           [](Feed& self, double time_s,
              const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& track_id,
              const py::object& estimate_time_s, const DoubleArray& mean,
-             const std::optional<DoubleArray>& covariance,
-             const std::optional<py::array_t<bool, py::array::c_style | py::array::forcecast>>&
-                 coasting,
+             const std::optional<DoubleArray>& covariance, const Flags& coasting,
              const py::object& turn_rate_rad_s, const py::object& age_s,
-             const std::optional<std::vector<std::string>>& name) {
-            const std::vector<ReportedTrack> tracks =
-                reported(track_id, estimate_time_s, mean, covariance, coasting, turn_rate_rad_s,
+             const std::optional<std::vector<std::string>>& name, const Flags& acquiring) {
+            std::vector<ReportedTrack> tracks =
+                reported(track_id, estimate_time_s, mean, covariance, acquiring, turn_rate_rad_s,
                          age_s, name);
+            set_flags("coasting", coasting, tracks, &ReportedTrack::coasting);
             std::vector<py::bytes> datagrams;
             self.update(finite_time(time_s), tracks,
                         [&](asterix::Octets octets) { datagrams.push_back(to_bytes(octets)); });
@@ -311,7 +329,7 @@ void define_asterix_feed(py::module_& m, const char* name, const char* doc) {
           py::arg("time_s"), py::arg("track_id"), py::arg("estimate_time_s"), py::arg("mean"),
           py::kw_only(), py::arg("covariance") = py::none(), py::arg("coasting") = py::none(),
           py::arg("turn_rate_rad_s") = py::none(), py::arg("age_s") = py::none(),
-          py::arg("name") = py::none(),
+          py::arg("name") = py::none(), py::arg("acquiring") = py::none(),
           (std::string("The datagrams that are due.\n\nParameters\n----------\ntime_s : float\n    "
                        "Now, UTC in seconds since any midnight.") +
            kColumnsDoc +
@@ -322,7 +340,9 @@ turn_rate_rad_s : float or (k,) array, optional
     To starboard.
 age_s : float or (k,) array, optional
     Time since the last plot.
-name : sequence of str, optional)doc")
+name : sequence of str, optional
+acquiring : (k,) array of bool, optional
+    Whether the operator has acquired the target and its motion is not known yet (CNF).)doc")
               .c_str());
 }
 

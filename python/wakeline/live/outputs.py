@@ -5,9 +5,7 @@ from __future__ import annotations
 import abc
 import math
 from collections.abc import Callable, Sequence
-from functools import reduce
-from operator import xor
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -117,16 +115,12 @@ class WireOutput(Output, abc.ABC):
             "estimate_time_s": shown.time_s[chosen],
             "mean": shown.mean[chosen],
             "name": [shown.names[k] for k in chosen.tolist()],
+            "acquiring": shown.acquiring[chosen],
         }
         more = self._more(session, chosen)
-        messages = self._feed.update(session.time_s, **columns, **more)
-        for octets in self._marked(session, messages):
+        for octets in self._feed.update(session.time_s, **columns, **more):
             self._send(octets)
         self.waiting = len(shown) - len(chosen) + self._feed.waiting
-
-    def _marked(self, session: Session, messages: Sequence[bytes]) -> Sequence[bytes]:
-        """Messages with what the feed does not know of their tracks."""
-        return messages
 
     def _chosen(self, session: Session) -> np.ndarray:
         """The rows of the tracks that are sent."""
@@ -148,71 +142,33 @@ class WireOutput(Output, abc.ABC):
         """What else the feed is given of these rows."""
 
 
-class _Form(NamedTuple):
-    """Which fields of a sentence of a target are what."""
-
-    status: int
-    motion: tuple[int, ...] = ()
-    acquisition: int = 0
-
-
-_SENTENCES = {b"TTM": _Form(12, (5, 6, 8, 9), 15), b"TLL": _Form(8)}
-
-
 class TtmOutput(WireOutput):
     """NMEA 0183: OSD with TTM, or TLL."""
-
-    def __init__(self, config: OutputConfig) -> None:
-        super().__init__(config)
-        self._track_of: dict[int, int] = {}  # by number, also of those that are lost now
-        self._acquiring: set[int] = set()
 
     def _make(self, session: Session) -> Any:
         periods = [radar.period_s for radar in session.tracker.radars]
         interval_s = max(_LEAST_INTERVAL_S, *periods)
         return wire.TtmFeed(session.plane, interval_s=interval_s, tll=self.config.format == "tll")
 
-    def _marked(self, session: Session, messages: Sequence[bytes]) -> Sequence[bytes]:
-        """Sentences with M of targets that the operator has acquired, at first Q and no motion."""
-        if not session.acquired:
-            return messages
-        self._track_of |= {number: track_id for track_id, number in self._feed.numbers.items()}
-        before, shown = self._acquiring, session.shown
-        self._acquiring = set(shown.track_id[shown.acquiring].tolist())
-        return [self._marked_one(session, one, before) for one in messages]
-
-    def _marked_one(self, session: Session, sentence: bytes, before: set[int]) -> bytes:
-        fields = sentence[1 : sentence.index(b"*")].split(b",")
-        form = _SENTENCES.get(fields[0][2:])
-        track_id = form and self._track_of.get(int(fields[1]))
-        if track_id not in session.acquired:
-            return sentence
-        is_lost = fields[form.status] == b"L"
-        if track_id in (before if is_lost else self._acquiring):
-            for k in form.motion:
-                fields[k] = b""
-            fields[form.status] = b"L" if is_lost else b"Q"
-        if form.acquisition:
-            fields[form.acquisition] = b"M"
-        text = b",".join(fields)
-        return b"$%s*%02X\r\n" % (text, reduce(xor, text))
-
     def _chosen(self, session: Session) -> np.ndarray:
         """Of more than there are numbers those in danger, then the nearest."""
         shown = session.shown
         if len(shown) <= _NUMBERS - _RESTING:
             return super()._chosen(session)
-        own = session.fix_of_receivers()
+        own, _ = session.fix_of_receivers()
         rank_m = np.hypot(shown.mean[:, 0] - own.north_m, shown.mean[:, 2] - own.east_m)
         rank_m[np.isin(shown.track_id, list(self._feed.numbers))] *= _KEEPS
         rank_m[np.isin(shown.track_id, list(session.watchers[0].alarms.in_danger))] = 0.0
         return np.argsort(rank_m, kind="stable")[: _NUMBERS - _RESTING]
 
     def _more(self, session: Session, chosen: np.ndarray) -> dict[str, Any]:
+        own, own_velocity_known = session.fix_of_receivers()
         heading = session.own.heading_at(session.time_s)
         return {
-            "own": session.fix_of_receivers(),
+            "own": own,
+            "own_velocity_known": own_velocity_known,
             "heading_rad": math.nan if heading is None else heading[0],
+            "manual": np.isin(session.shown.track_id[chosen], list(session.acquired)),
         }
 
 

@@ -203,6 +203,33 @@ TEST(WireTtmFeed, ASavedFeedGoesOnWithTheSameNumbers) {
   EXPECT_FALSE(first.empty());
 }
 
+TEST(WireTtmFeed, WhatIsNotKnownIsEmpty) {
+  const LocalPlane plane({deg(50.0), deg(-1.0)});
+  const auto sent = [&](const ReportedTrack& track, bool own_velocity_known) {
+    std::vector<std::vector<std::string>> sentences;
+    TtmFeed(plane).update(
+        0.0, {.vnorth_mps = 5.0}, NAN, std::span(&track, 1),
+        [&](std::string_view text) { sentences.push_back(fields_of(text)); }, own_velocity_known);
+    return sentences;
+  };
+  ReportedTrack track;
+  track.id = 1;
+  track.kinematics.mean << 900.0, 4.0, 100.0, -3.0;
+  const std::vector<int> motion{5, 6}, approach{8, 9};
+  for (const bool acquiring : {false, true})
+    for (const bool own_velocity_known : {false, true}) {
+      track.acquiring = track.manual = acquiring;
+      const auto sentences = sent(track, own_velocity_known);
+      ASSERT_EQ(sentences.size(), 2u);
+      EXPECT_EQ(sentences[0][5].empty(), !own_velocity_known) << "speed in OSD";
+      for (const int k : motion) EXPECT_EQ(sentences[1][std::size_t(k)].empty(), acquiring) << k;
+      for (const int k : approach)
+        EXPECT_EQ(sentences[1][std::size_t(k)].empty(), acquiring || !own_velocity_known) << k;
+      EXPECT_EQ(sentences[1][12], acquiring ? "Q" : "T");
+      EXPECT_EQ(sentences[1][15].substr(0, 1), acquiring ? "M" : "A");
+    }
+}
+
 TEST(WireTtmFeed, NothingIsAllocated) {
   const LocalPlane plane({deg(50.0), deg(-1.0)});
   TtmFeed feed(plane);

@@ -118,10 +118,11 @@ struct Cat062 {
   }
 
  private:
-  /// MON, then TSE and TSB, then, of a coasting track, CST and PSR in the fourth octet.
+  /// MON and CNF, then TSE and TSB, then, of a coasting track, CST and PSR in the fourth octet.
   static void put_status(BlockWriter& block, const TrackRecord& record) noexcept {
     const bool coasting = record.track.coasting;
-    block.put(1, (record.config.several_radars ? 0x00 : 0x80) | 1);
+    block.put(
+        1, (record.config.several_radars ? 0x00 : 0x80) | (record.track.acquiring ? 0x02 : 0) | 1);
     block.put(1,
               (record.turn.last ? 0x40 : 0) | (record.turn.first ? 0x20 : 0) | (coasting ? 1 : 0));
     if (!coasting) return;
@@ -181,8 +182,9 @@ struct Cat010 {
     block.put(2, azimuth_steps(record.plane.true_course_rad(std::atan2(mean[3], mean[1]), place)));
     block.put(2, record.turn.number);
     const bool turning = std::abs(track.turn_rate_rad_s) > kTurning_rad_s;
-    block.put(1, (record.turn.last ? 0x40 : 0) | (track.coasting ? 0x30 : 0) |
-                     (turning ? 0x08 : 0) | 0x02);  // TRE, CST, MAH, STH: smoothed
+    block.put(1, (track.acquiring ? 0x80 : 0) | (record.turn.last ? 0x40 : 0) |
+                     (track.coasting ? 0x30 : 0) | (turning ? 0x08 : 0) |
+                     0x02);  // CNF, TRE, CST, MAH, STH: smoothed
     if (!track.has_covariance) return;
     block.put(1, unsigned_steps(record.std_of(2), 0.25, 8));
     block.put(1, unsigned_steps(record.std_of(0), 0.25, 8));

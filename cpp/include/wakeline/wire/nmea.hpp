@@ -166,7 +166,13 @@ struct NmeaTarget {
   double tcpa_s = kNone;  ///< negative in the past
   std::string_view name;
   bool lost = false;
-  double time_s = 0.0;  ///< UTC, since a midnight
+  bool acquiring = false;  ///< not yet followed
+  bool manual = false;     ///< acquired by the operator
+  double time_s = 0.0;     ///< UTC, since a midnight
+
+  [[nodiscard]] std::string_view status() const noexcept {
+    return lost ? "L" : acquiring ? "Q" : "T";
+  }
 };
 
 /// Own ship as OSD describes it. NaN is an empty field.
@@ -192,8 +198,7 @@ inline std::string_view write_ttm(NmeaSentence& sentence, std::string_view talke
                                   const NmeaTarget& target) noexcept {
   const double range_nm = std::max(target.range_m / detail::kMile_m, 0.001);
   const double speed_kn = detail::knots_of(target.speed_mps);
-  if (!(range_nm < 999.9995) || !(speed_kn < 999.95) || !std::isfinite(target.bearing_rad))
-    return {};
+  if (!(range_nm < 999.9995) || speed_kn >= 999.95 || !std::isfinite(target.bearing_rad)) return {};
   const double cpa_nm = target.cpa_m / detail::kMile_m, tcpa_min = target.tcpa_s / 60.0;
   const bool soon = std::abs(tcpa_min) < 999.5;  // else of no use, as for one that does not move
   std::array<char, 5> address{talker[0], talker[1], 'T', 'T', 'M'};
@@ -211,10 +216,10 @@ inline std::string_view write_ttm(NmeaSentence& sentence, std::string_view talke
   constexpr std::size_t rest = std::string_view(",,L,,235959.99,A").size();
   const std::size_t room = sentence.left() - std::min(sentence.left(), rest);
   sentence.text(target.name, std::min(room, detail::kLongestName));
-  sentence.field(target.lost ? "L" : "T");
+  sentence.field(target.status());
   sentence.empty();
   sentence.time_of_day(target.time_s);
-  sentence.field("A");
+  sentence.field(target.manual ? "M" : "A");
   return sentence.end();
 }
 
@@ -229,7 +234,7 @@ inline std::string_view write_tll(NmeaSentence& sentence, std::string_view talke
   sentence.longitude(target.place.longitude_rad);
   sentence.text(target.name, detail::kLongestName);
   sentence.time_of_day(target.time_s);
-  sentence.field(target.lost ? "L" : "T");
+  sentence.field(target.status());
   sentence.empty();
   return sentence.end();
 }

@@ -29,6 +29,8 @@ struct ReportedTrack {
   Gaussian<4> kinematics = {};     ///< `[x, vx, y, vy]` at that time, north and east
   bool has_covariance = false;     ///< that of `kinematics` is known
   bool coasting = false;           ///< not seen when the radar looked last
+  bool acquiring = false;          ///< acquired by the operator, its motion not yet known
+  bool manual = false;             ///< acquired by the operator, also long ago
   double turn_rate_rad_s = kNone;  ///< to starboard; NaN when unknown
   double age_s = kNone;            ///< since the last plot; NaN when unknown
   std::array<char, 32> name{};     ///< zero-terminated
@@ -188,6 +190,8 @@ class ReportSchedule {
       fields(track.kinematics.covariance);
       fields(track.has_covariance);
       fields(track.coasting);
+      fields(track.acquiring);
+      fields(track.manual);
       fields(track.turn_rate_rad_s);
       fields(track.age_s);
       fields(track.name);

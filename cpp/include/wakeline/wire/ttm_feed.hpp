@@ -59,19 +59,22 @@ class TtmFeed {
 
   /// Calls `sink(sentence)`, with carriage return and line feed, for what is due. `tracks` are all
   /// that are shown; `own` is own ship in the plane, `heading_rad` its true heading, NaN when
-  /// unknown or old.
+  /// unknown or old. What needs the velocity of own ship is empty where that is not known.
   template <class Sink>
   void update(double time_s, const OwnShip& own, double heading_rad,
-              std::span<const ReportedTrack> tracks, Sink&& sink) noexcept {
+              std::span<const ReportedTrack> tracks, Sink&& sink,
+              bool own_velocity_known = true) noexcept {
     const GeoPoint place = plane_.place(own.position<double>());
     bool osd_sent = false;
     schedule_.update(time_s, tracks, [&](const ReportedTrack& track, const ReportTurn& turn) {
       NmeaSentence sentence;
-      const NmeaTarget target = describe(time_s, own, place, track, turn);
+      NmeaTarget target = describe(time_s, own, place, track, turn);
+      if (!own_velocity_known) target.cpa_m = target.tcpa_s = NmeaTarget::kNone;
       const std::string_view text = config_.tll ? write_tll(sentence, config_.talker, target)
                                                 : write_ttm(sentence, config_.talker, target);
       if (text.empty()) return;
-      if (!std::exchange(osd_sent, true)) sink(write_own(own, place, heading_rad));
+      if (!std::exchange(osd_sent, true))
+        sink(write_own(own, place, heading_rad, own_velocity_known));
       sink(text);
     });
   }
@@ -93,22 +96,27 @@ class TtmFeed {
     const GeoLine line = geodesic(own_place, target.place);
     target.range_m = line.distance_m;
     target.bearing_rad = line.course_rad;
-    target.speed_mps = velocity.norm();
-    target.course_rad = plane_.true_course_rad(std::atan2(velocity[1], velocity[0]), target.place);
-    std::tie(target.cpa_m, target.tcpa_s) =
-        straight_approach(position - own.position<double>(), velocity - own.velocity<double>());
+    if (!track.acquiring) {
+      target.speed_mps = velocity.norm();
+      target.course_rad =
+          plane_.true_course_rad(std::atan2(velocity[1], velocity[0]), target.place);
+      std::tie(target.cpa_m, target.tcpa_s) =
+          straight_approach(position - own.position<double>(), velocity - own.velocity<double>());
+    }
+    target.acquiring = track.acquiring;
+    target.manual = track.manual;
     target.name = track.label();
     target.lost = turn.last;
     target.time_s = time_s;
     return target;
   }
 
-  std::string_view write_own(const OwnShip& own, const GeoPoint& place,
-                             double heading_rad) noexcept {
+  std::string_view write_own(const OwnShip& own, const GeoPoint& place, double heading_rad,
+                             bool velocity_known) noexcept {
     NmeaOwnShip ship;
     const Vec<double, 2> velocity = own.velocity<double>();
     ship.heading_rad = heading_rad;
-    ship.speed_mps = velocity.norm();
+    if (velocity_known) ship.speed_mps = velocity.norm();
     if (ship.speed_mps > 0.05)
       ship.course_rad = plane_.true_course_rad(std::atan2(velocity[1], velocity[0]), place);
     return write_osd(own_sentence_, config_.talker, ship);
