@@ -21,6 +21,7 @@ import wakeline as wl
 from harbor import RANGE_M, Harbor
 from test_live import written
 from wakeline.cli import main
+from wakeline.live import network
 from wakeline.live.config import (
     InputConfig,
     LiveConfig,
@@ -275,6 +276,70 @@ def test_an_output_serves_clients_and_drops_for_one_that_does_not_read():
     stalled.close()
     thread.join(5.0)
     reader.close()
+
+
+def test_a_peer_that_appears_has_only_what_comes_from_then_on():
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        one = NetworkOutput(OutputConfig(f"tcp://127.0.0.1:{server.getsockname()[1]}"))
+        for k in range(3):
+            one.send(b"old%d" % k)
+        one.start()
+        until(lambda: one.is_failing)
+        server.listen(1)
+        peer, _ = server.accept()
+        until(lambda: one.dropped == 3)
+        one.send(b"new")
+        assert peer.recv(99) == b"new"
+    one.close()
+    one.join()
+    peer.close()
+
+
+@pytest.mark.parametrize("scheme", ["tcp", "tcp-listen"])
+def test_what_a_peer_does_not_read_in_time_is_dropped(scheme, monkeypatch):
+    """But for some octets of the system; a file has all."""
+    monkeypatch.setattr(network, "_LONGEST_WAIT_S", 0.2)
+    with socket.socket() as server:
+        server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        server.bind(("127.0.0.1", 0))
+        server.listen(1)
+        port = server.getsockname()[1] if scheme == "tcp" else 0
+        one = NetworkOutput(OutputConfig(f"{scheme}://127.0.0.1:{port}"))
+        one.start()
+        if scheme == "tcp":
+            peer, _ = server.accept()
+        else:
+            peer = socket.socket()
+            peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            peer.connect(("127.0.0.1", one.port))
+        until(lambda: "connected" in one.connection and "0 connected" not in one.connection)
+        for k in range(5000):
+            one.send(b"%079d\n" % k)
+        time.sleep(0.4)
+        one.send(b"%079d\n" % 5000)
+        got = b""
+        until(lambda: one.sent + one.dropped >= 5001 and one.dropped > 4000)
+        while not got.endswith(b"5000\n"):
+            got += peer.recv(1 << 16)
+        assert got.count(b"\n") < 200
+        assert all(len(line) == 79 for line in got.splitlines())
+    one.close()
+    one.join()
+    peer.close()
+
+
+def test_a_file_has_all(tmp_path, monkeypatch):
+    monkeypatch.setattr(network, "_LONGEST_WAIT_S", 0.0)
+    one = NetworkOutput(OutputConfig(f"file:{tmp_path / 'f'}"))
+    for k in range(100):
+        one.send(b"%d\n" % k)
+    time.sleep(0.01)
+    one.start()
+    until(lambda: one.sent == 100)
+    one.close()
+    one.join()
+    assert (tmp_path / "f").read_bytes() == b"".join(b"%d\n" % k for k in range(100))
 
 
 def test_the_clock_does_not_go_back(monkeypatch):

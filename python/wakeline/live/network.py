@@ -6,7 +6,6 @@ import abc
 import contextlib
 import errno
 import math
-import queue
 import re
 import select
 import socket
@@ -40,7 +39,9 @@ _LONGEST_STEP_S = 600.0  # between JSON lines of a file: those of two clocks are
 _TIME = re.compile(rb'"time_s"\s*:\s*(-?\d{1,15}(?:\.\d*)?(?:[eE][-+]?\d{1,2})?)')
 _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
-_MOST_QUEUED = 1 << 20  # octets for a client that does not read
+_MOST_QUEUED = 1 << 20  # octets that wait for a receiver
+_LONGEST_WAIT_S = 5.0  # of a message for a receiver that is not a file
+_MOST_UNSENT = 1024  # octets in a socket that the network does not take
 PROBES = {"TCP_KEEPIDLE": 30, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 3}  # s, s, times
 HOW_TO_GET_SERIAL = "serial lines need pyserial: pip install 'wakeline[live]'"
 
@@ -370,7 +371,8 @@ def _timed_lines(file: BinaryIO) -> Iterator[tuple[float | None, bytes]]:
 class NetworkOutput(_Thread):
     """One output of a session, sent in a thread.
 
-    What a receiver does not take waits, up to 1 MiB; beyond that the oldest messages are dropped.
+    What a receiver does not take waits, up to 1 MiB and, but for files, 5 s; beyond that the oldest
+    messages are dropped. A receiver that is connected has only what comes from then on.
 
     Parameters
     ----------
@@ -379,9 +381,10 @@ class NetworkOutput(_Thread):
 
     def __init__(self, config: OutputConfig) -> None:
         super().__init__(config)
-        self._waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-        self._queued = 0
         self.sent = self.dropped = 0
+        self._counting = threading.Lock()
+        is_file = config.scheme in ("file", "stdout")
+        self._waiting = _Backlog(self._drop, math.inf if is_file else _LONGEST_WAIT_S)
 
     def send(self, octets: bytes) -> None:
         """Send a message; it never waits."""
@@ -391,15 +394,16 @@ class NetworkOutput(_Thread):
                 self.connection = "sending"
                 self.sent += 1
             except OSError as error:
-                self.dropped += 1
+                self._drop(1)
                 if error.errno not in (errno.ECONNREFUSED, errno.EAGAIN):
                     self.connection = self._error = in_words(error)
             return
-        if self._queued > _MOST_QUEUED:
-            self.dropped += 1
-            return
-        self._queued += len(octets)
-        self._waiting.put(octets)
+        self._waiting.add(octets)
+
+    def _drop(self, count: int) -> None:
+        """Count dropped messages."""
+        with self._counting:
+            self.dropped += count
 
     def start(self) -> None:
         if self._datagrams is None:
@@ -425,6 +429,8 @@ class NetworkOutput(_Thread):
         if self.config.scheme == "tcp":
             with self._connected() as one:
                 one.settimeout(10.0)
+                _limit_unsent(one)
+                self._waiting.clear()
                 return self._each(one.sendall)
         if self.config.scheme == "tcp-listen":
             return self._serve()
@@ -440,19 +446,14 @@ class NetworkOutput(_Thread):
                 try:
                     send(octets)
                 except OSError:
-                    self.dropped += 1
+                    self._drop(1)
                     raise
                 self.sent += 1
             elif self._ends.is_set():
                 return True
 
     def _next(self) -> bytes | None:
-        try:
-            octets = self._waiting.get(timeout=0.05 if self._ends.is_set() else _WAIT_S)
-        except queue.Empty:
-            return None
-        self._queued -= len(octets)
-        return octets
+        return self._waiting.take(0.05 if self._ends.is_set() else _WAIT_S)
 
     def _write_file(self) -> bool:
         if self.config.scheme == "stdout":
@@ -469,6 +470,7 @@ class NetworkOutput(_Thread):
         baud = int(self._query.get("baud", ["4800"])[-1])
         with serial.Serial(self._url.path, baud, write_timeout=5.0) as one:
             self.connection = f"open at {baud} baud"
+            self._waiting.clear()
             return self._each(one.write)
 
     def _serve(self) -> bool:
@@ -477,19 +479,20 @@ class NetworkOutput(_Thread):
         try:
             while True:
                 self.connection = f"port {self.port}, {len(clients)} connected"
-                octets = self._next() if not clients or not self._waiting.empty() else None
+                octets = self._waiting.take(0.0) if clients else self._next()
                 with contextlib.suppress(OSError):
                     one, _ = self._listener.accept()
                     one.setblocking(False)
                     if len(clients) < _MOST_CLIENTS:
                         _probe(one)
-                        clients[one] = _Client(one)
+                        _limit_unsent(one)
+                        clients[one] = _Client(one, self._drop)
                     else:
                         one.close()
                 self.sent += octets is not None and bool(clients)
                 for one, client in list(clients.items()):
                     if octets is not None:
-                        self.dropped += client.add(octets)
+                        client.waiting.add(octets)
                     if not client.flush():
                         del clients[one]
                         one.close()
@@ -503,35 +506,71 @@ class NetworkOutput(_Thread):
                 one.close()
 
 
+class _Backlog:
+    """Messages that wait to be sent. Of those that are too old or too many the oldest are dropped.
+
+    Parameters
+    ----------
+    drop : callable
+        Called with the number of messages that are dropped.
+    longest_s : float
+        Longest time that a message waits.
+    """
+
+    def __init__(self, drop: Callable[[int], None], longest_s: float) -> None:
+        self._drop, self._longest_s = drop, longest_s
+        self._messages = deque[tuple[float, bytes]]()
+        self._octets = 0
+        self._news = threading.Condition()
+
+    def add(self, octets: bytes) -> None:
+        """Add a message."""
+        with self._news:
+            self._messages.append((time.monotonic(), octets))
+            self._octets += len(octets)
+            self._forget()
+            self._news.notify()
+
+    def take(self, wait_s: float = 0.0) -> bytes | None:
+        """The oldest message, waiting for one if there is none."""
+        with self._news:
+            if not self._messages:
+                self._news.wait(wait_s)
+            self._forget()
+            return self._pop() if self._messages else None
+
+    def clear(self) -> None:
+        """Drop all messages."""
+        with self._news:
+            self._drop(len(self._messages))
+            self._messages.clear()
+            self._octets = 0
+
+    def _pop(self) -> bytes:
+        _, octets = self._messages.popleft()
+        self._octets -= len(octets)
+        return octets
+
+    def _forget(self) -> None:
+        since_s = time.monotonic() - self._longest_s
+        while self._messages and (self._octets > _MOST_QUEUED or self._messages[0][0] < since_s):
+            self._pop()
+            self._drop(1)
+
+
 class _Client:
     """A client of a listening output, with what it has not read yet."""
 
-    def __init__(self, one: socket.socket) -> None:
-        self._socket, self._waiting, self._queued = one, deque[bytes](), 0
-
-    def add(self, octets: bytes) -> int:
-        """Add a message; the number of older ones dropped."""
-        self._waiting.append(octets)
-        self._queued += len(octets)
-        dropped = 0
-        while self._queued > _MOST_QUEUED and len(self._waiting) > 2:
-            begun = self._waiting.popleft()  # of which a part may be sent already
-            old = self._waiting.popleft()
-            self._waiting.appendleft(begun)
-            self._queued -= len(old)
-            dropped += 1
-        return dropped
+    def __init__(self, one: socket.socket, drop: Callable[[int], None]) -> None:
+        self._socket, self._begun = one, b""
+        self.waiting = _Backlog(drop, _LONGEST_WAIT_S)
 
     def flush(self) -> bool:
         """Send what the client takes; False if it is gone."""
         try:
-            while self._waiting:
-                sent = self._socket.send(self._waiting[0])
-                self._queued -= sent
-                if sent < len(self._waiting[0]):
-                    self._waiting[0] = self._waiting[0][sent:]
-                    return True
-                self._waiting.popleft()
+            while octets := self._begun or self.waiting.take():
+                self._begun = octets
+                self._begun = octets[self._socket.send(octets) :]
             return self._socket.recv(_PIECE) != b""
         except BlockingIOError:
             return True
@@ -577,6 +616,12 @@ def _probe(one: socket.socket) -> None:
     for name, value in PROBES.items():
         if hasattr(socket, name):
             one.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
+
+
+def _limit_unsent(one: socket.socket) -> None:
+    """Let messages wait here, not in the system, where old ones cannot be dropped."""
+    if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+        one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, _MOST_UNSENT)
 
 
 def close_all(threads: Iterable[_Thread]) -> None:
