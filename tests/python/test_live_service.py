@@ -103,6 +103,25 @@ def test_udp_multicast_on_the_interface(taken):
     one.close()
 
 
+@pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0", "239.192.0.21", "127.255.255.255"])
+def test_only_what_every_receiver_has_a_copy_of_is_shared(host, taken):
+    one = opened(f"udp://{host}:0?iface=127.0.0.1", taken)
+    again = f"udp://{host}:{one.port}?iface=127.0.0.1"
+    if host in ("127.0.0.1", "0.0.0.0"):
+        with pytest.raises(OSError, match="in use"):
+            NetworkInput(InputConfig(again), taken)
+    else:
+        other = opened(again, taken)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            loopback = socket.inet_aton("127.0.0.1")
+            sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)
+            sender.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+            sender.sendto(b"x", (host, one.port))
+        until(lambda: taken.octets == b"xx")
+        other.close()
+    one.close()
+
+
 def test_a_tcp_client_connects_again(taken):
     with socket.create_server(("127.0.0.1", 0)) as server:
         one = opened(f"tcp://127.0.0.1:{server.getsockname()[1]}", taken)
@@ -518,6 +537,27 @@ def test_what_is_no_file_is_not_recorded_to_and_stays(tmp_path):
         with pytest.raises(OSError, match="not a file"):
             Service(wl.live.Session({}), path).run()
         assert path.exists()
+
+
+def test_a_second_session_does_not_record_to_the_same_file(tmp_path):
+    path = tmp_path / "s.pcap"
+    limits = SessionConfig(segment_mb=0.01, most_mb=0.03)
+    config = LiveConfig(radars=(ASHORE,), session=limits)
+    first = Service(wl.live.Session(config), path)
+    first._begin()
+    for k in range(120):
+        t, octets = turn(k, time.time())
+        first._feed("x", [(t, octets)])
+        if k in (0, 119):  # its first segment is there, and removed
+            with pytest.raises(OSError, match=str(path)):
+                Service(wl.live.Session(config), path).run()
+    first.close()
+    assert not path.exists()
+    last = [record.octets for record in read_session(path) if record.octets]
+    assert last[-1] == octets
+    after = Service(wl.live.Session(config), path)
+    after._begin()
+    after.close()
 
 
 def test_a_cut_file_loses_its_last_record_only(tmp_path):

@@ -184,18 +184,18 @@ class NetworkInput(_Thread):
         if port is None:
             raise SettingsError(f"input {self.config.url} needs a port")
         one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        is_group = 224 <= int(host.split(".")[0] if host[0].isdigit() else 0) <= 239
+        if is_group or _is_broadcast(host):  # every receiver has a copy
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         for option in (getattr(socket, "SO_RCVBUFFORCE", 33), socket.SO_RCVBUF):
             with contextlib.suppress(OSError):
                 one.setsockopt(socket.SOL_SOCKET, option, _RECEIVE_BUFFER)
                 break
-        if 224 <= int(host.split(".")[0] if host[0].isdigit() else 0) <= 239:
+        _bind(one, host, port)
+        if is_group:
             interface = self._query.get("iface", ["0.0.0.0"])[-1]
-            _bind(one, host, port)
             member = struct.pack("4s4s", socket.inet_aton(host), socket.inet_aton(interface))
             one.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
-        else:
-            _bind(one, host, port)
         return one
 
     def _udp(self) -> bool:
@@ -608,6 +608,18 @@ def _bind(one: socket.socket, host: str, port: int) -> None:
     except OSError:
         one.close()
         raise
+
+
+def _is_broadcast(host: str) -> bool:
+    """Whether it is a broadcast address: the system asks for permission to send there."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        try:
+            one.connect((host, 1))
+        except PermissionError:
+            return True
+        except OSError:
+            return False
+    return False
 
 
 def _probe(one: socket.socket) -> None:

@@ -10,14 +10,20 @@ the session, so that it can be replayed alone.
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import re
 import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 from urllib.parse import urlsplit
+
+try:
+    import fcntl
+except ImportError:  # not POSIX
+    fcntl = None  # type: ignore[assignment]
 
 from wakeline.recording import RecordingError
 from wakeline.recording.containers import datagrams_of
@@ -197,6 +203,28 @@ class Recorder:
                 segments[0].unlink()
             segments.pop(0)
             sizes.pop(0)
+
+
+def lock(path: Path) -> BinaryIO:
+    """Keep a session file for this process until the file returned is closed, or it dies.
+
+    That file is beside the first segment, which may be removed, and stays.
+
+    Raises
+    ------
+    OSError
+        When another process records to the session file.
+    """
+    file = path.with_name(path.name + ".lock").open("ab")
+    try:
+        if fcntl is not None:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        file.close()
+        raise OSError(errno.EBUSY, "another process records to this file", str(path)) from None
+    except OSError:  # the file system has no locks
+        pass
+    return file
 
 
 def segments_of(path: str | Path) -> list[Path]:

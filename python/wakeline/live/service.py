@@ -11,13 +11,13 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from wakeline.recording import RecordingError
 
 from .network import NetworkInput, NetworkOutput, close_all, now_s
 from .problems import in_words
-from .record import Record, Recorder, at_microsecond, read_session, segments_of
+from .record import Record, Recorder, at_microsecond, lock, read_session, segments_of
 from .session import CLOCK, Session
 
 _TICK_S = 0.5
@@ -58,6 +58,7 @@ class Service:
         self._counting = threading.Lock()
         self._recorder: Recorder | None = None
         self._record = record
+        self._lock: BinaryIO | None = None
         self._tick_s = self._again_s = -math.inf
 
     def take(self, name: str, messages: list[tuple[float, bytes]]) -> None:
@@ -156,6 +157,7 @@ class Service:
             path = Path(self._record)
             if path.exists() and not path.is_file():
                 raise FileExistsError(errno.EEXIST, "not a file that can be recorded to", str(path))
+            self._lock = lock(path)
             if segments_of(path) and segments_of(path)[-1].stat().st_size > 0:
                 board = self.session.watchers[0]
                 log, board.log = board.log, None  # which has what is recorded
@@ -241,6 +243,8 @@ class Service:
         close_all(self.outputs)
         if self._recorder is not None:
             self._recorder.close()
+        if self._lock is not None:
+            self._lock.close()
 
 
 def note_outputs(session: Session, outputs: Iterable[NetworkOutput]) -> None:
