@@ -96,6 +96,32 @@ def test_ttm_puts_every_target_where_it_is_for_a_ship_that_turns():
         assert np.diff(each).min() > 2.4
 
 
+@pytest.mark.parametrize("own", [{}, {"velocity": True}, {"place_deg": ORIGIN_DEG}])
+def test_without_the_velocity_of_own_ship_nothing_is_made_up(own):
+    """Neither its speed nor closest approaches, also when its position is lost; ashore it is 0."""
+    moves = own.pop("velocity", False)
+    session = wl.live.Session({"radar": [RADAR | {"period_s": 2.5}], "own": own})
+    output, sent = session.add_output("udp://127.0.0.1:1?format=ttm"), []
+    output.send = lambda octets: sent.append((session.time_s, fields_of(octets)))
+    place = dict(zip(("latitude_deg", "longitude_deg"), ORIGIN_DEG, strict=True))
+    velocity = {"course_rad": 0.0, "speed_mps": 5.0} if moves else {}
+    session.feed(0.0, "gnss", json.dumps({"own": place | velocity}).encode())
+    for k in range(30):
+        time_s = 0.3 * k
+        plot = {"time_s": time_s, "range_m": 900.0 - 2.0 * k, "bearing_rad": 1.0}
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": time_s}}
+        for line in (plot, mark):
+            session.feed(time_s, "radar", json.dumps(line).encode())
+    for time_s in range(9, 60):
+        session.feed(float(time_s), "clock", b"")
+    is_known = {True: [], False: []}
+    for time_s, fields in sent:
+        needing = fields[8:10] if fields[0] == "RATTM" else fields[5:7]
+        is_known[time_s > 10.0].append("" not in needing)
+    assert set(is_known[False]) == {moves or bool(own)}
+    assert set(is_known[True]) == {bool(own)}
+
+
 def test_a_lost_target_is_reported_once():
     sent, session = run("ttm", seconds=200.0, gone_s=60.0)
     assert session.tracker.tracks() == []

@@ -919,25 +919,25 @@ class Session:
 
     # ------------------------------------------------------------------ places
 
-    def fix_of_receivers(self) -> OwnShip:
-        """Own ship as receivers of TTM have it: the last fix, not predicted; ashore the radar."""
+    def fix_of_receivers(self) -> tuple[OwnShip, bool]:
+        """Own ship as receivers of TTM have it, and whether its velocity is known.
+
+        It is at the last fix, not predicted; ashore at the radar.
+        """
         pose = self.own.at(self.time_s)
         if isinstance(pose, Missing):
             used = self.own.position.used
             if used is not None:  # receivers keep the last fix
                 north_m, east_m = used.value[-1][:2]
-                return OwnShip(north_m=north_m, east_m=east_m)
+                return OwnShip(north_m=north_m, east_m=east_m), False
             antenna = self._antenna(self.config.radars[0], self.time_s, needs_heading=False)
-            return OwnShip() if isinstance(antenna, Missing) else antenna[1]
+            return (OwnShip(), False) if isinstance(antenna, Missing) else (antenna[1], True)
         source = self.own.position.fresh(self.time_s)
         place_m = (pose.north_m, pose.east_m) if source is None else source.value[-1]
         known = math.isfinite(pose.vnorth_mps)
-        return OwnShip(
-            north_m=place_m[0],
-            east_m=place_m[1],
-            vnorth_mps=pose.vnorth_mps if known else 0.0,
-            veast_mps=pose.veast_mps if known else 0.0,
-        )
+        velocity = (pose.vnorth_mps, pose.veast_mps) if known else (0.0, 0.0)
+        columns = ("north_m", "east_m", "vnorth_mps", "veast_mps")
+        return OwnShip(**dict(zip(columns, (*place_m[:2], *velocity), strict=True))), known
 
     @property
     def origin_deg(self) -> tuple[float, float] | None:
