@@ -645,6 +645,46 @@ def test_of_contradicting_sources_the_status_says_which_is_used_and_why():
     assert session.status()["inputs"]["udp"]["problems"] == {}
 
 
+@pytest.mark.parametrize(
+    ("quantity", "body"),
+    [
+        ("position", "GPGGA,120000,,,,,0,00,,,M,,M,,"),
+        ("position", "GPGGA,120000,5418.0,N,01012.0,E,0,00,,,M,,M,,"),
+        ("position", "GPGGA,120000,5418.0,N,01012.0,E,7,08,1,,M,,M,,"),
+        ("position", "GPGGA,120000,5418.0,N,01012.0,E,8,08,1,,M,,M,,"),
+        ("position", "GPGGA,120000,0000.0,N,00000.0,E,1,08,1,,M,,M,,"),
+        ("position", "GNGNS,120000,5418.0,N,01012.0,E,SN,08,1,,,,"),
+        ("position", "GPGLL,5418.0,N,01012.0,E,120000,V,N"),
+        ("position", "GPRMC,120000,V,,,,,,,281126,,,N"),
+        ("velocity", "GPRMC,120000,V,,,,,,,281126,,,N"),
+        ("velocity", "GPRMC,120000,A,5418.0,N,01012.0,E,9.0,90.0,281126,,,S"),
+        ("velocity", "GPVTG,,T,,M,,N,,K,N"),
+        ("heading", "HETHS,100.0,S"),
+        ("heading", "HETHS,100.0,V"),
+        ("heading", "HEHDT,,T"),
+    ],
+)
+def test_an_instrument_that_has_not_measured_is_not_used_and_visible(quantity, body):
+    session, texts = joyride_session(), []
+    session.listeners.append(lambda _, values: texts.append(values.get("text", "")))
+    for k in range(20):
+        session.feed(1.0 * k, "gnss", sentence_of(body).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": 1.0 * k}}
+        session.feed(1.0 * k, "radar", json.dumps(mark).encode())
+    status = session.status()
+    own = status["own"][quantity]
+    assert own["source"] is None
+    assert body[:5] in own["why"]
+    assert [one["source"].partition("@")[0] for one in own["rejected"]] == [body[:5]]
+    if quantity == "position":
+        assert body[:5] in status["frozen"]
+        assert any(body[:5] in text for text in texts)
+    good = {"latitude_deg": 54.3, "longitude_deg": 10.2, "heading_rad": 0.1}
+    good |= {"course_rad": 0.1, "speed_mps": 5.0}
+    session.feed(20.0, "json", json.dumps({"own": good}).encode())
+    assert body[:5] not in session.status()["own"][quantity]["why"]
+
+
 def test_a_preferred_source_is_used():
     session = wl.live.Session({"own": {"position": ["CHGLL"], "velocity": ["BOVTG@udp"]}})
     for t, sentence in halo():

@@ -300,6 +300,8 @@ def status_line(status: dict[str, Any]) -> str:
         if own["source"]:
             age = f"{own['age_s']:.1f} s" if own["fresh"] else f"{own['age_s']:.0f} s old, not used"
             parts.append(f"{name} {own['source'].partition('@')[0]} {age}")
+        elif own["rejected"]:
+            parts.append(f"{name} {own['why']}")
     for name, radar in status["radars"].items():
         if radar["age_s"] is not None:
             parts.append(f"{name} {radar['plots']} plots, {radar['age_s']:.1f} s")

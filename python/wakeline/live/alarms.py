@@ -177,6 +177,7 @@ class Sensor(NamedTuple):
     name: str
     age_s: float
     limit_s: float
+    why: str = "no data"
 
 
 class Disagreement(NamedTuple):
@@ -306,8 +307,8 @@ class Alarms:
         heading_rad : float, optional
         events : iterable of wakeline.Event
             Of the tracker; a loss has its reason there.
-        sensors : iterable of (name, age_s, limit_s)
-            All sources at this time.
+        sensors : iterable of (name, age_s, limit_s, why)
+            All sources at this time; `why` it has no data may be left out.
         disagreements : iterable of (track_id, identity, text)
             All that hold at this time.
 
@@ -457,12 +458,12 @@ class Alarms:
         return f"{self._called(first)} and {self._called(second)} come close"
 
     def _pass_sensors(self, sensors: list[Sensor]) -> None:
-        for name, age_s, limit_s in sensors:
+        for name, age_s, limit_s, why in sensors:
             held = self._sensors.setdefault(name, _Held(self.time_s, -math.inf))
             if age_s > limit_s or math.isnan(age_s):
                 held.good_since_s = math.nan
                 if held.alarm is None:
-                    held.alarm = self._begin("sensor lost", f"{name}: no data", source=name)
+                    held.alarm = self._begin("sensor lost", f"{name}: {why}", source=name)
                 continue
             if math.isnan(held.good_since_s):
                 held.good_since_s = self.time_s

@@ -14,15 +14,32 @@ from .lines import LineAssembly
 from .problems import Problems
 
 _AIS = ("VDM", "VDO")
+_GIVES = {
+    **dict.fromkeys(("GGA", "GNS", "GLL"), ("position",)),
+    "RMC": ("position", "velocity"),
+    "VTG": ("velocity",),
+    **dict.fromkeys(("HDT", "THS", "HDG", "HDM"), ("heading",)),
+}
+_MODE = {"GGA": 5, "GNS": 5, "RMC": 11, "GLL": 6, "VTG": 8, "THS": 1}  # fields
+_STATUS = {"RMC": 1, "GLL": 5}  # fields
+_SIMULATOR = "simulator"
+_NOT_MEASURED = {  # by mode or quality; of several modes the first one counts
+    **dict.fromkeys("S8", _SIMULATOR),
+    **dict.fromkeys("E6", "estimated"),
+    **dict.fromkeys("M7", "manual input"),
+    **dict.fromkeys("N0", "no fix"),
+    "V": "not valid",
+}
 
 
 class OwnReading(NamedTuple):
-    """A reading of own ship: quantity, sentence, talker, and values."""
+    """A reading of own ship: quantity, sentence, talker, and values, or why there are none."""
 
     quantity: str
     sentence: str
     talker: str
     values: tuple[float, ...]
+    why_not: str = ""
 
 
 class AisMessage(NamedTuple):
@@ -101,25 +118,52 @@ class NmeaDecoder:
 
 def _readings(sentence: Sentence, rows: Rows) -> Iterator[OwnReading]:
     kind, talker = sentence.kind, sentence.address[: -len(sentence.kind)]
+    state = _state(sentence)
+    found = [] if state == _SIMULATOR else list(_values(rows))
+    for quantity, values in found:
+        yield OwnReading(quantity, kind, talker, values)
+    if sentence.faults:
+        return
+    given = {"heading" if quantity == "magnetic" else quantity for quantity, _ in found}
+    for quantity in _GIVES.get(kind, ()):
+        if quantity not in given:
+            at_zero = quantity == "position" and rows.of["fixes"]
+            why_not = state or ("position 0/0" if at_zero else "no value")
+            yield OwnReading(quantity, kind, talker, (), why_not)
+
+
+def _state(sentence: Sentence) -> str:
+    """What an instrument says of data that it has not measured; empty if it has."""
+    kind = sentence.kind
+    modes = sentence.text(_MODE[kind]) if kind in _MODE else ""
+    states = [words for mode, words in _NOT_MEASURED.items() if mode in modes]
+    if states and len(states) == len(set(modes)):
+        return states[0]
+    if kind in _STATUS and sentence.text(_STATUS[kind]) == "V":
+        return "no fix"
+    return "no quality" if kind in ("GGA", "GNS") and not modes else ""
+
+
+def _values(rows: Rows) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Quantities and values of what was measured."""
     for _, _, _, valid, latitude, longitude, *_ in rows.of["fixes"]:
         if valid and max(abs(latitude), abs(longitude)) > 1e-4:
-            yield OwnReading("position", kind, talker, (latitude, longitude))
+            yield "position", (latitude, longitude)
     for _, _, _, valid, speed, course, *_ in rows.of["ground"]:
         if valid and (math.isfinite(course) or speed == 0.0):
             course = course if math.isfinite(course) else 0.0
             if math.isfinite(speed):
-                velocity = speed * math.cos(course), speed * math.sin(course)
-                yield OwnReading("velocity", kind, talker, velocity)
+                yield "velocity", (speed * math.cos(course), speed * math.sin(course))
     for _, variation in rows.variation:
-        yield OwnReading("variation", kind, talker, (variation,))
+        yield "variation", (variation,)
     for _, _, _, valid, heading in rows.of["heading"]:
         if valid:
-            yield OwnReading("heading", kind, talker, (heading,))
+            yield "heading", (heading,)
     for _, _, _, valid, heading, variation in rows.of["compass"]:
         if math.isfinite(variation):
-            yield OwnReading("variation", kind, talker, (variation,))
+            yield "variation", (variation,)
         if valid:
-            yield OwnReading("magnetic", kind, talker, (heading,))
+            yield "magnetic", (heading,)
     for _, _, _, valid, rate in rows.of["turn"]:
         if valid:
-            yield OwnReading("turn", kind, talker, (rate,))
+            yield "turn", (rate,)

@@ -105,11 +105,13 @@ class Ranked:
         self.why = "no source yet"
         self._preferred, self._dwell_s, self.oldest_s = tuple(preferred), dwell_s, age_s
         self._begin_s: float | None = None
+        self._rejected: dict[SourceKey, tuple[float, str]] = {}
 
     def add(
         self, time_s: float, key: SourceKey, value: tuple[float, ...], unusable: str = ""
     ) -> None:
         """Add a reading; `unusable` says why it cannot be used."""
+        self._rejected.pop(key, None)
         source = self.sources.get(key)
         if source is None:
             source = self.sources[key] = Source(key, self._rank(key), time_s)
@@ -120,6 +122,19 @@ class Ranked:
         if self._begin_s is None:
             self._begin_s = time_s
         self.choose(time_s)
+
+    def reject(self, time_s: float, key: SourceKey, why: str) -> None:
+        """Note that a source has no reading, and why."""
+        self._rejected[key] = time_s, why
+
+    def rejection(self, time_s: float) -> tuple[str, float] | None:
+        """What the best of the sources that have no reading says, and its age."""
+        recent = [
+            (self._rank(key), f"{key.talker}{key.sentence}: {why}", time_s - when_s)
+            for key, (when_s, why) in self._rejected.items()
+            if time_s - when_s <= self.oldest_s
+        ]
+        return min(recent)[1:] if recent else None
 
     def choose(self, time_s: float) -> None:
         """Choose the source to be used at a time."""
@@ -175,12 +190,15 @@ class Ranked:
 
     def status(self, time_s: float, shown: Callable[[tuple[float, ...]], Any]) -> dict[str, Any]:
         """Which source is used and why, and what the others say."""
-        used = self.used
+        used, fresh, why = self.used, self.fresh(time_s) is not None, self.why
+        rejection = None if fresh else self.rejection(time_s)
+        if rejection is not None:
+            why = f"{rejection[0]}, {rejection[1]:.1f} s old"
         return {
             "source": None if used is None else str(used.key),
-            "why": self.why,
+            "why": why,
             "age_s": None if used is None else round(self.age_s(time_s), 3),
-            "fresh": self.fresh(time_s) is not None,
+            "fresh": fresh,
             "sources": [
                 {
                     "source": str(one.key),
@@ -191,6 +209,10 @@ class Ranked:
                     "why_not": one.unusable or None if one is not used else None,
                 }
                 for one in sorted(self.sources.values(), key=lambda one: one.rank)
+            ],
+            "rejected": [
+                {"source": str(key), "age_s": round(time_s - when_s, 3), "why": why}
+                for key, (when_s, why) in self._rejected.items()
             ],
         }
 
@@ -279,15 +301,21 @@ class OwnShipSources:
         for one in (self.position, self.heading, self.velocity, self.turn):
             one.choose(time_s)
 
-    def ages_s(self, time_s: float) -> list[tuple[str, float, float]]:
-        """Of position and heading that have come, the age and the age at which it is too old."""
+    def ages_s(self, time_s: float) -> list[tuple[str, float, float, str]]:
+        """Of position and heading the age, the age at which it is too old, and why it may be.
+
+        The age is NaN where nothing has come.
+        """
         if self._fixed is not None:
             return []
-        return [
-            (name, math.inf if one.used.unusable else one.age_s(time_s), one.oldest_s)
-            for name, one in (("position", self.position), ("heading", self.heading))
-            if one.used is not None
-        ]
+        found = []
+        for name, one in (("position", self.position), ("heading", self.heading)):
+            age_s = math.nan if one.used is None else one.age_s(time_s)
+            if one.used is not None and one.used.unusable:
+                age_s = math.inf
+            why, _ = one.rejection(time_s) or ("no data", 0.0)
+            found.append((name, age_s, one.oldest_s, why))
+        return found
 
     def at(self, time_s: float, *, needs_heading: bool = False) -> Pose | Missing:
         """Own ship at a time, or why it is not known."""
@@ -410,9 +438,11 @@ class OwnShipSources:
         )
 
     def _too_old(self, name: str, ranked: Ranked, time_s: float) -> str:
+        rejection = ranked.rejection(time_s)
+        why = f" ({rejection[0]})" if rejection else ""
         if ranked.used is None:
-            return f"no {name}"
-        return f"{name} {ranked.age_s(time_s):.0f} s old"
+            return f"no {name}{why}"
+        return f"{name} {ranked.age_s(time_s):.0f} s old{why}"
 
     def status(self, time_s: float, to_deg: Callable[[float, float], Any]) -> dict[str, Any]:
         """Of each quantity the source used and why; `to_deg` gives latitude and longitude."""

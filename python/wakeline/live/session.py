@@ -228,7 +228,10 @@ class Session:
 
     def _take_own(self, time_s: float, source: Source, reading: Any) -> None:
         key = SourceKey(reading.sentence, reading.talker, source.group)
-        self._add_own(time_s, key, reading.quantity, reading.values)
+        if reading.why_not:
+            getattr(self.own, reading.quantity).reject(time_s, key, reading.why_not)
+        else:
+            self._add_own(time_s, key, reading.quantity, reading.values)
 
     def _add_own(
         self, time_s: float, key: SourceKey, quantity: str, values: tuple[float, ...]
@@ -394,6 +397,8 @@ class Session:
         news = self._unpublished or self.tracker.time_s > before_s
         if news and self._is_due():
             self._publish()
+        if not self.tracker.time_s:  # also while no sector can be used
+            self._watch(time_s)
 
     def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
         for sector in sectors:
@@ -543,16 +548,17 @@ class Session:
         for track_id in gone:
             self._history.pop(track_id, None)
             self.acquired.pop(track_id, None)
-        if self.tracker.time_s - self._watched_s >= _WATCH_S:
-            self._watched_s = self.tracker.time_s
-            events = [
-                event
-                for watcher in self.watchers
-                for event in watcher.update(self, self.tracker.time_s)
-            ]
-            self.news.clear()
-            for event in events:
-                self._event(event)
+        self._watch(self.tracker.time_s)
+
+    def _watch(self, time_s: float) -> None:
+        """Look for alarms, if the last look is long enough ago."""
+        if time_s - self._watched_s < _WATCH_S:
+            return
+        self._watched_s = time_s
+        events = [event for watcher in self.watchers for event in watcher.update(self, time_s)]
+        self.news.clear()
+        for event in events:
+            self._event(event)
 
     def _remember(self, table: wl.track.TrackTable, rows: np.ndarray) -> None:
         """Keep the positions of tracks, as far apart in time as they are shown."""

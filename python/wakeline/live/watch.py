@@ -165,10 +165,10 @@ def _sensors(session: Any, time_s: float) -> list[Sensor]:
         for name, feed in session.feeds.items()
         if feed.last_s > float("-inf")
     ]
-    own = session.own.ages_s(time_s)
-    sensors += [Sensor(f"own ship's {name}", age_s, oldest_s) for name, age_s, oldest_s in own]
-    never = {one.unused_why for one in session.feeds.values()} & {"no position", "no heading"}
-    sensors += [Sensor(f"own ship's {why[3:]}", math.inf, 0.0) for why in sorted(never)]
+    unused = [one.unused_why for one in session.feeds.values()]
+    for name, age_s, oldest_s, why in session.own.ages_s(time_s):
+        if not math.isnan(age_s) or any(one.startswith(f"no {name}") for one in unused):
+            sensors.append(Sensor(f"own ship's {name}", age_s, oldest_s, why))
     return sensors
 
 

@@ -223,7 +223,7 @@ export class Panel {
     this.late.count = late;
     if (late) rows.push(["Late data", `${late} sectors, more than ${status.late.window_s} s`, store.time_s < this.late.until_s ? "bad" : ""]);
     for (const [name, one] of Object.entries(status.own ?? {})) {
-      if (one?.source || one?.sources?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? "none"}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source && one.fresh !== false ? "good" : "bad"]);
+      if (one?.source || one?.sources?.length || one?.rejected?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? one.why}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source && one.fresh !== false ? "good" : "bad"]);
     }
     if (store.replay) rows.push(["Recording", `${store.replay.paused ? "paused" : "playing"} at ${clock(store.time_s)}`, "good"]);
     byId("sources").hidden = rows.length === 0;
