@@ -21,11 +21,12 @@ from test_cli_navigate import sentence as sentence_of
 from wakeline._engine.video import Cat240Encoder
 from wakeline.live.ais import AisPicture
 from wakeline.live.asterix_feed import BlockAssembly
-from wakeline.live.config import config_of
+from wakeline.live.config import InputConfig, config_of
 from wakeline.live.lines import LineAssembly
 from wakeline.live.nmea import AisMessage, NmeaDecoder
 from wakeline.live.own_ship import Missing, OwnShipSources, SourceKey
 from wakeline.live.problems import Problems
+from wakeline.live.sources import Source
 from wakeline.live.video_feed import Sweeps, VideoFeed
 from wakeline.tracking.settings import SettingsError
 from wakeline.wire import SensorClock
@@ -1159,6 +1160,66 @@ def test_a_stream_of_asterix_may_begin_within_a_block_and_has_other_categories(p
     ]
     ours = [block for block in blocks if block[0] != 247]
     assert found[-380:] == ours[-380:]
+
+
+def turns_of_blocks(turns):
+    """A plot and a mark of north a turn, as category 048 and 034 of one radar."""
+    for k in range(turns):
+        time = (128 * k + 64).to_bytes(3, "big")
+        yield b"\x30\x00\x0e\xf0\x19\x07" + time + b"\x20\x02\x29\x20" + bytes([k])
+        yield b"\x22\x00\x0c\xe8\x19\x07\x01" + time + b"\x01\x40"
+
+
+def test_plots_of_a_stream_that_begins_within_a_block_are_found_within_a_few():
+    blocks = list(turns_of_blocks(8))
+    for cut in range(1, len(blocks[0])):
+        assembly, problems = BlockAssembly(), Problems()
+        pieces = [blocks[0][cut:], *blocks[1:]]
+        found = [one for piece in pieces for one in assembly.feed(piece, problems)]
+        assert found[-13:] == blocks[-13:]
+        assert problems.count["ASTERIX"] > 0
+
+
+def test_a_header_without_a_block_costs_no_other_block():
+    blocks, assembly, problems = list(turns_of_blocks(8)), BlockAssembly(), Problems()
+    pieces = [*blocks[:6], b"\x30\xff\xff", *blocks[6:]]
+    assert [one for piece in pieces for one in assembly.feed(piece, problems)] == blocks
+    assert problems.count == {"ASTERIX": 1}
+
+
+def readings(pieces, url="tcp://127.0.0.1:1"):
+    """What an input of unknown format reads in pieces at 5 Hz, and the input."""
+    source = Source(InputConfig(url))
+    found = [one for k, piece in enumerate(pieces) for one in source.read(0.2 * k, piece)]
+    return found, source
+
+
+def test_a_stream_of_sentences_may_begin_anywhere():
+    fix = sentence_of("GPGGA,101010.00,5400.000,N,01000.000,E,1,10,0.8,2.0,M,44.0,M,,").encode()
+    lines = fix + b"\r\n" + sentence_of("HEHDT,30.0,T").encode() + b"\r\n"
+    for start in (lines, b'0"\xf0\n\r\n'):
+        for cut in range(len(start)):
+            found, source = readings([start[cut:], *[lines] * 5])
+            assert {one.quantity for _, one in found} == {"position", "heading"}
+            assert source.status(1.0)["format"] == "nmea"
+            skipped = start[cut:].partition(b"$")[0].strip()
+            assert bool(source.problems.count) == bool(skipped), start[cut:]
+
+
+def test_the_format_of_a_stream_is_recognized_anew():
+    blocks = list(turns_of_blocks(6))
+    fix = sentence_of("GPGLL,5400.000,N,01000.000,E,,A").encode() + b"\r\n"
+    found, source = readings([*blocks, *[fix] * 6, *blocks[1:]])
+    kinds = [kind for kind, _ in found]
+    assert kinds[-1] == "radar"
+    assert kinds.count("own") == 6
+    assert source.status(2.0)["format"] == "cat048"
+
+
+def test_a_datagram_may_have_octets_before_its_sentence():
+    fix = sentence_of("GPGLL,5400.000,N,01000.000,E,,A").encode()
+    for start in (b"\n", b"\0", b"0", b'"', b"\xf0"):
+        assert len(readings([start + fix], "udp://127.0.0.1:1")[0]) == 1
 
 
 def test_messages_of_redundant_groups_count_once():

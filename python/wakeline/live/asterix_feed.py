@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 
 from wakeline import wire
@@ -11,13 +12,61 @@ from .problems import Problems
 from .radar_feed import PlotRow, Sector
 
 CATEGORIES = (10, 34, 48)
-_OURS = frozenset((*CATEGORIES, 240))
+VIDEO = 240
+_OURS = frozenset((*CATEGORIES, VIDEO))
 _ALL = _OURS | {*range(1, 34), 62, 63, 65, 150, 205, 247, 252}
 _HEAD = 3  # octets of the category and the length of a block
+# The header of a block of ours, whose first record has a source.
+_HEADER = re.compile(rb"[\n\"0\xf0](?=..[\x80-\xff])", re.DOTALL)
 _PLOT, _NORTH, _SECTOR = 0, 1, 2
 _TURN_RAD = 2.0 * math.pi
 _SAME_RAD = 1e-6
 _LATE_S = 2.0  # a mark from so much before the last one has been overtaken by it
+
+
+def are_blocks(octets: bytes) -> bool:
+    """Whether octets are whole blocks, of which the first is ours."""
+    at = 0
+    while at + _HEAD <= len(octets) and _begins_at(octets, at, _ALL if at else _OURS):
+        at += _length_at(octets, at)
+    return at == len(octets) > 0
+
+
+def chain_in(octets: bytes, begin: int = 0) -> int | None:
+    """Where blocks follow one another of which two have the same source; None if nowhere."""
+    places = (match.start() for match in _HEADER.finditer(octets, begin))
+    return next((at for at in places if _is_chain(octets, at)), None)
+
+
+def _is_chain(octets: bytes, at: int) -> bool:
+    sources: set[bytes] = set()
+    while at + _HEAD < len(octets) and _begins_at(octets, at, _ALL):
+        if octets[at] in _OURS:
+            source = _source_at(octets, at)
+            if len(source) == 2 and source in sources:
+                return True
+            sources.add(source)
+        at += _length_at(octets, at)
+    return False
+
+
+def _source_at(octets: bytes, at: int) -> bytes:
+    """Area and system of the first record of a block."""
+    at += _HEAD
+    while at < len(octets) and octets[at] & 1:  # the field specification continues
+        at += 1
+    return octets[at + 1 : at + 3]
+
+
+def _length_at(octets: bytes, at: int) -> int:
+    return int.from_bytes(octets[at + 1 : at + _HEAD], "big")
+
+
+def _begins_at(octets: bytes, at: int, categories: frozenset[int]) -> bool:
+    """Whether a block begins there, and another one where it ends."""
+    length = _length_at(octets, at)
+    after = octets[at + length : at + length + 1]
+    return octets[at] in categories and length >= _HEAD and (not after or after[0] in _ALL)
 
 
 class BlockAssembly:
@@ -25,29 +74,31 @@ class BlockAssembly:
 
     def __init__(self) -> None:
         self._rest = b""
+        self._search_at = 0  # octets of a block that is not whole
 
     def feed(self, octets: bytes, problems: Problems) -> Iterator[bytes]:
         """Take the next octets; the blocks of our categories that are whole with them."""
         self._rest += octets
         while len(self._rest) >= _HEAD:
-            if not self._begins_at(0, _ALL):
-                problems.add("ASTERIX", f"no data block begins with {self._rest[:_HEAD].hex()}")
-                ends = range(1, len(self._rest) - _HEAD + 1)
-                begin = next((k for k in ends if self._begins_at(k, _OURS)), len(self._rest))
-                self._rest = self._rest[begin:]
+            begins, length = _begins_at(self._rest, 0, _ALL), _length_at(self._rest, 0)
+            if begins and len(self._rest) >= length:
+                block, self._rest, self._search_at = self._rest[:length], self._rest[length:], 0
+                if block[0] in _OURS:
+                    yield block
                 continue
-            length = int.from_bytes(self._rest[1:_HEAD], "big")
-            if len(self._rest) < length:
+            if begins and len(self._rest) < self._search_at:
                 return
-            block, self._rest = self._rest[:length], self._rest[length:]
-            if block[0] in _OURS:
-                yield block
-
-    def _begins_at(self, at: int, categories: frozenset[int]) -> bool:
-        """Whether a block begins there, and another one where it ends."""
-        length = int.from_bytes(self._rest[at + 1 : at + _HEAD], "big")
-        after = self._rest[at + length : at + length + 1]
-        return self._rest[at] in categories and length >= _HEAD and (not after or after[0] in _ALL)
+            begin = chain_in(self._rest, 1)
+            if begin is None and begins:  # wait until it is whole; search seldom in a long one
+                self._search_at = len(self._rest) * 5 // 4
+                return
+            if begin is None:
+                ends = range(1, len(self._rest) - _HEAD + 1)
+                found = (k for k in ends if _begins_at(self._rest, k, _OURS))
+                begin = next(found, len(self._rest))
+            head = self._rest[:_HEAD].hex()
+            problems.add("ASTERIX", f"{begin} octets skipped: no data block begins with {head}")
+            self._rest, self._search_at = self._rest[begin:], 0
 
 
 class AsterixFeed:

@@ -77,7 +77,7 @@ class InputConfig:
     name : str
         The name in the status; default the URL without its query.
     format : str
-        One of `IN_FORMATS`; empty: each message is recognized by its first octets.
+        One of `IN_FORMATS`; empty: recognized by the octets.
     radar : str
         Name of the radar of video or plots that do not name one; default the first.
     """

@@ -10,12 +10,13 @@ from typing import Any
 
 from wakeline.wire import SensorClock
 
-from .asterix_feed import CATEGORIES, AsterixFeed, BlockAssembly
+from .asterix_feed import VIDEO, AsterixFeed, BlockAssembly
 from .config import InputConfig
 from .json_lines import BadLine, read_line
 from .lines import LineAssembly
 from .nmea import AisMessage, NmeaDecoder
 from .problems import Problems
+from .recognition import format_in_stream, format_of_datagram
 from .signalk import SignalkDecoder, VesselReading
 from .spokes import SpokeFeed
 from .video_feed import VideoFeed
@@ -24,6 +25,10 @@ _RATE_S = 5.0
 _LONGEST_LINE = 1 << 16
 _TWICE_S = 2.0  # the same message of redundant senders comes within this time
 _PLOTS = ("cat048", "cat010")
+_ASTERIX = ("cat240", *_PLOTS)
+_MOST_UNKNOWN = 1 << 17  # octets of a stream; two blocks of ASTERIX are no longer
+_UNKNOWN_S = 2.0  # after which octets of an unknown format are a problem
+_KEPT = 4096  # octets of them
 
 
 @dataclass
@@ -111,11 +116,10 @@ class Source:
         self.connection = ""
         self.failing = False
         self.video: VideoFeed | None = None
-        self._nmea = NmeaDecoder(config.is_stream)
-        self._lines = LineAssembly(config.is_stream, _LONGEST_LINE)
-        self._blocks = BlockAssembly()
         self._signalk = SignalkDecoder()
         self._format = config.format
+        self._unsure, self._unsure_s = b"", -math.inf
+        self._begin_decoders()
 
     @classmethod
     def unknown(cls, name: str, shared: Receivers) -> Source:
@@ -139,7 +143,46 @@ class Source:
         """What the next octets hold: kind and values."""
         self.rate.add(time_s, len(octets))
         self.last_s = time_s
-        kind = self._format or self._recognized(octets)
+        if self.config.format:
+            yield from self._read_as(self.config.format, time_s, octets)
+        elif self.config.is_stream:
+            yield from self._read_stream(time_s, octets)
+        elif kind := format_of_datagram(octets):
+            yield from self._read_as(kind, time_s, octets)
+        elif octets:
+            self._add_unknown(octets)
+
+    def _read_stream(self, time_s: float, octets: bytes) -> Iterator[tuple[str, Any]]:
+        """Read a stream, whose format is looked for until it gives something, and again after."""
+        if not self._unsure:
+            self._unsure_s = time_s
+        self._unsure += octets
+        found = False
+        for each in self._read_as(self._format, time_s, octets):
+            found = True
+            yield each
+        kind = "" if found else format_in_stream(self._unsure)
+        known = kind == self._format or {kind, self._format} <= {*_ASTERIX}
+        if kind and not known:
+            self._format = kind
+            self._begin_decoders()
+            yield from self._read_as(kind, time_s, self._unsure)
+        if found or kind:
+            self._unsure = b""
+        elif len(self._unsure) > _MOST_UNKNOWN or time_s - self._unsure_s > _UNKNOWN_S:
+            if not self._format:
+                self._add_unknown(self._unsure)
+            self._unsure, self._unsure_s = self._unsure[-_KEPT:], time_s
+
+    def _begin_decoders(self) -> None:
+        self._nmea = NmeaDecoder(self.config.is_stream)
+        self._lines = LineAssembly(self.config.is_stream, _LONGEST_LINE)
+        self._blocks = BlockAssembly()
+
+    def _add_unknown(self, octets: bytes) -> None:
+        self.problems.add("unknown", f"wanted NMEA, JSON or ASTERIX, got {octets[:24]!r}")
+
+    def _read_as(self, kind: str, time_s: float, octets: bytes) -> Iterator[tuple[str, Any]]:
         if kind == "nmea":
             for reading in self._nmea.feed(time_s, octets, self.problems):
                 yield ("ais" if isinstance(reading, AisMessage) else "own"), reading
@@ -156,17 +199,19 @@ class Source:
         elif kind == "spokes":
             for each in self._spoke_feed().feed(time_s, octets, self.problems):
                 yield "radar", each
-        elif kind == "cat240" or kind in _PLOTS:
+        elif kind in _ASTERIX:
             blocks = self._blocks.feed(octets, self.problems) if self.config.is_stream else [octets]
             for block in blocks:
-                if not self._shared.recent.is_new(time_s, self.radar, block):
-                    self.duplicates += 1
-                    continue
-                for each in self._receiver(kind).feed(time_s, block, self.problems):
-                    yield "radar", each
-        elif octets:
-            wanted = "wanted NMEA, JSON or ASTERIX"
-            self.problems.add("unknown", f"{wanted}, got {octets[:24]!r}")
+                yield from self._read_block(kind, time_s, block)
+
+    def _read_block(self, kind: str, time_s: float, block: bytes) -> Iterator[tuple[str, Any]]:
+        if not self._shared.recent.is_new(time_s, self.radar, block):
+            self.duplicates += 1
+            return
+        if not self.config.format:
+            kind = "cat240" if block[0] == VIDEO else "cat048"
+        for each in self._receiver(kind).feed(time_s, block, self.problems):
+            yield "radar", each
 
     def _spoke_feed(self) -> SpokeFeed:
         feeds = self._shared.spokes
@@ -190,21 +235,6 @@ class Source:
         if self.video is not None:
             for each in self.video.pass_to(time_s, self.problems):
                 yield "radar", each
-
-    def _recognized(self, octets: bytes) -> str:
-        head = octets[:64].lstrip()
-        kind = ""
-        if head[:1] in (b"$", b"!", b"\\") or head.startswith(b"UdPbC"):
-            kind = "nmea"
-        elif head[:1] == b"{":
-            kind = "json"
-        elif octets[:1] == b"\xf0":
-            kind = "cat240"
-        elif octets[:1] and octets[0] in CATEGORIES:
-            kind = "cat048"
-        if kind and self.config.is_stream and self.config.url:
-            self._format = kind
-        return kind
 
     def status(self, time_s: float) -> dict[str, Any]:
         """Counts, rates, age and problems."""
