@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 from urllib.parse import parse_qs, urlsplit
 
+from wakeline.recording import RecordingError
 from wakeline.recording.containers import datagrams_of
 
 from . import signalk
@@ -120,6 +121,9 @@ class _Thread(abc.ABC):
                     self.connection = "ended"
                     return
                 self.connection = "closed by the other side"
+            except RecordingError as error:
+                self.connection = self._error = str(error)
+                return
             except (OSError, SettingsError) as error:
                 self.connection = self._error = in_words(error)
             if time.monotonic() - began_s > 2.0 * _BACK_OFF_S[1]:
@@ -157,11 +161,17 @@ class NetworkInput(_Thread):
     config : InputConfig
     take : callable
         Called in the thread with the name and the messages.
+
+    Raises
+    ------
+    OSError, SettingsError, RecordingError
+        When an address cannot be listened at, or a capture cannot be read.
     """
 
     def __init__(self, config: InputConfig, take: Take) -> None:
         super().__init__(config)
         self._take = take
+        self._capture = datagrams_of(self._path()) if config.scheme == "pcap" else None
         if self._datagrams is not None:
             self.port = self._datagrams.getsockname()[1]
 
@@ -318,7 +328,7 @@ class NetworkInput(_Thread):
 
     def _pcap(self) -> bool:
         self.connection = "reading"
-        return self._paced((one.time_s, one.octets) for one in datagrams_of(self._path()))
+        return self._paced((one.time_s, one.octets) for one in self._capture)
 
     def _paced(
         self, messages: Iterable[tuple[float | None, bytes]], longest_s: float = math.inf

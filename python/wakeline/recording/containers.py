@@ -147,12 +147,16 @@ class Datagram(NamedTuple):
 def datagrams_of(path: str | Path) -> Iterator[Datagram]:
     """The datagrams of a network capture, and the octets of its TCP connections, in order.
 
-    RecordingError when the file cannot be read or is not a capture.
+    RecordingError, at once, when the file cannot be read or is not a capture.
     """
     contents = Contents()
     packets = _packets_of(_Stream(_decompressed(Path(path), None)), contents)
     if packets is None:
         raise RecordingError(path, "not a network capture", wanted="pcap or pcapng")
+    return _datagrams_in(packets)
+
+
+def _datagrams_in(packets: Iterable[_Packet]) -> Iterator[Datagram]:
     fragments, connections = _Fragments(), _Connections()
     for packet in packets:
         payload = _payload_of(packet, fragments) if packet.whole else None
