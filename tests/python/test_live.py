@@ -1099,7 +1099,7 @@ def test_plots_of_video_come_before_the_beam_has_passed_their_sector(together):
             azimuth_rad = (number + 0.5) * width_rad
             time_s = 1e6 + 2.5 * (turn + (number + 0.5) / sweeps)
             part = Sweeps(azimuth_rad, time_s, width_rad, 0.0, 10.0, cells[number])
-            for one in feed.take(part):
+            for one in feed.take(part, Problems()):
                 if hasattr(one, "range_m"):
                     plots += 1
                     if passed_rad is not None:
@@ -1111,6 +1111,77 @@ def test_plots_of_video_come_before_the_beam_has_passed_their_sector(together):
     assert plots > 100
     assert np.median(lags_rad) < 0.03
     assert max(lags_rad) <= 0.1 + 1e-6
+
+
+def marks_of_video(azimuths_rad, turns=4, period_s=2.5, problems=None):
+    """The sectors that end with sweeps of an antenna, at these azimuths in each turn."""
+    feed, found = VideoFeed(), []
+    cells = np.random.default_rng(1).rayleigh(10.0, (len(azimuths_rad), 64)).astype(np.uint8)
+    for turn in range(turns):
+        for first in range(0, len(azimuths_rad), 8):
+            azimuth_rad = azimuths_rad[first : first + 8]
+            time_s = 1e6 + period_s * (turn + azimuth_rad / math.tau)
+            part = Sweeps(azimuth_rad, time_s, math.tau / 512, 0.0, 10.0, cells[first : first + 8])
+            found += [one for one in feed.take(part, problems or Problems())]
+    return [one for one in found if hasattr(one, "to_rad")]
+
+
+@pytest.mark.parametrize("blanked", [0.0, 0.45, 0.5, 0.6, 0.8])
+def test_sectors_of_video_adjoin_across_a_blanked_part_of_the_turn(blanked):
+    azimuth_rad = (np.arange(int(512 * (1.0 - blanked))) + 0.5) * math.tau / 512
+    marks = marks_of_video(azimuth_rad, turns=10)
+    for one, other in itertools.pairwise(marks):
+        assert other.from_rad % math.tau == pytest.approx(one.to_rad % math.tau)
+    first, last = marks[0].time_s, marks[-1].time_s
+    swept = sum(one.to_rad - one.from_rad for one in marks[1:]) / math.tau
+    assert swept == pytest.approx((last - first) / 2.5, abs=0.1)
+    assert swept > 3.0
+
+
+def test_an_antenna_that_turns_anticlockwise_is_named():
+    problems = Problems()
+    azimuth_rad = (np.arange(512)[::-1] + 0.5) * math.tau / 512
+    assert marks_of_video(azimuth_rad, problems=problems) == []
+    assert set(problems.count) == {"anticlockwise"}
+
+
+def counted(numbers):
+    """A video feed that has taken sweeps with these numbers of their messages."""
+    feed, problems, encoder = VideoFeed(), Problems(), Cat240Encoder(1, 2)
+    cells, kind = np.zeros((1, 64), np.uint8), b"\x01\x02\x02"  # of radar 1, 2
+    for k, number in enumerate(numbers):
+        at = np.array([0.01 * k]), np.array([0.001 * k])
+        message = encoder.encode(cells, *at, azimuth_width_rad=0.01, start_range_m=0.0, cell_m=10.0)
+        count = kind + k.to_bytes(4, "big")
+        message = message.replace(count, kind + number.to_bytes(4, "big"), 1)
+        list(feed.feed(0.001 * k, message, problems))
+    list(feed.pass_to(1e3, problems))
+    return feed
+
+
+def test_sweeps_that_come_late_are_not_lost():
+    numbers = list(range(500))
+    for k in (20, 100, 130):
+        numbers[k], numbers[k + 1] = numbers[k + 1], numbers[k]
+    late = counted(numbers)
+    assert (late.lost, late.late, late.duplicates) == (0, 3, 0)
+    some = counted([k for k in range(500) if k not in (100, 101, 200)])
+    assert (some.lost, some.late, some.sweeps) == (3, 0, 497)
+    outage = counted([*range(100), *range(1000, 1200)])
+    assert outage.lost == 900
+
+
+def test_sweeps_of_a_sender_that_does_not_count_are_used():
+    assert counted([0] * 200).sweeps == 200
+
+
+def test_the_same_message_a_turn_later_is_another_one():
+    """Of a still target, from a radar that sends no times."""
+    plot = b"\x30\x00\x0b\xb0\x19\x07\x20\x02\x29\x20\x00"
+    source = Source(InputConfig("udp://127.0.0.1:1"))
+    found = [list(source.read(1.25 * k + late_s, plot)) for k in range(9) for late_s in (0.0, 0.2)]
+    assert [len(one) for one in found] == [1, 0] * 9
+    assert source.duplicates == 9
 
 
 def test_the_status_says_how_far_the_clock_of_a_radar_server_is_off():

@@ -15,6 +15,7 @@ _COUNTERS = {
     "unused_plots": "Plots not used, because own ship was not known.",
     "excluded_plots": "Plots in exclusion zones or on land that are not used.",
     "lost_sweeps": "Sweeps missing according to the sender's count.",
+    "late_sweeps": "Sweeps that came after later ones and are not used.",
 }
 _GAUGES = {
     "messages_per_s": "Messages a second, over 5 s.",

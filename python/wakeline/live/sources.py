@@ -23,7 +23,7 @@ from .video_feed import VideoFeed
 
 _RATE_S = 5.0
 _LONGEST_LINE = 1 << 16
-_TWICE_S = 2.0  # the same message of redundant senders comes within this time
+_TWICE_S = 0.5  # the same message of redundant senders comes within this time
 _PLOTS = ("cat048", "cat010")
 _ASTERIX = ("cat240", *_PLOTS)
 _MOST_UNKNOWN = 1 << 17  # octets of a stream; two blocks of ASTERIX are no longer
@@ -62,13 +62,13 @@ class Rate:
 
 
 class RecentMessages:
-    """Messages of the last 2 s, to drop those that come again by another way."""
+    """Messages of the last 0.5 s, to drop those that come again by another way."""
 
     def __init__(self) -> None:
         self._time_s: dict[int, float] = {}
 
     def is_new(self, time_s: float, radar: str, octets: bytes) -> bool:
-        """Whether the message of a radar has not come in the last 2 s."""
+        """Whether the message of a radar has not come in the last 0.5 s."""
         key, times = hash((radar, octets)), self._time_s
         is_new = time_s - times.get(key, -math.inf) > _TWICE_S
         if is_new:

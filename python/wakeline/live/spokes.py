@@ -69,7 +69,7 @@ class SpokeFeed:
             problems.add("spokes", str(error) or type(error).__name__)
             return
         for _, alike in groupby(spokes, key=lambda spoke: spoke.geometry):
-            yield from self.video.take(self._sweeps(time_s, list(alike)))
+            yield from self.video.take(self._sweeps(time_s, list(alike)), problems)
 
     def _learn(self, octets: bytes) -> None:
         capabilities = json.loads(octets)

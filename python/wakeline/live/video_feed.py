@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -23,8 +24,10 @@ _BATCH = 32  # messages decoded together
 _WAIT_S = 0.01  # unless the first of them is older
 _LATE = 64  # messages; a count that goes back further has restarted
 _SEQUENCES = 1 << 32
+_STEPS = 64  # from sweep to sweep, that the sense of rotation is found from
 _BEHIND_RAD = 0.1  # of the beam, at most: where echoes that have not ended begin
 _SECTOR_RAD = _TAU / 128
+_BACK_RAD = 2.0 * _BEHIND_RAD  # of a turn, at most: the end of a sector has gone back
 _TRIAL_RAD = _TAU  # of video that settings are estimated from
 _MOST_TRIAL = 256 << 20  # octets
 _LEAST_STEP_S = 1e-4  # between the ends of sectors
@@ -72,7 +75,8 @@ class VideoFeed:
     Attributes
     ----------
     sweeps, lost, late, duplicates : int
-        Sweeps taken; missing by the sender's count; that came late; that came twice.
+        Sweeps taken; missing by the sender's count, after 64 messages; that came late, and are not
+        used; that came twice.
     clock : SensorClock
     """
 
@@ -85,13 +89,15 @@ class VideoFeed:
         self._waiting: list[bytes] = []
         self._times: list[float] = []
         self._sequence = -1
+        self._missing: deque[int] = deque()  # of the last 64
         self._source: int | None = None
         self._extractor: wl.PlotExtractor | None = None
         self._kind: Kind | None = None
         self._geometry: tuple | None = None
         self._trial: list[Sweeps] = []
         self._trial_rad = 0.0
-        self._azimuth_rad = math.nan
+        self._azimuth_rad = self._kept_rad = math.nan
+        self._clockwise = 0  # steps of the last sweeps, less those anticlockwise
         self._edge_rad = math.nan
         self._edge_s = self._time_s = -math.inf
 
@@ -124,7 +130,7 @@ class VideoFeed:
         if len(received_s) != len(found.offset):
             received_s = np.full(len(found.offset), times[-1])
         for sweeps in self._of_one_geometry(found, received_s, problems):
-            yield from self.take(sweeps)
+            yield from self.take(sweeps, problems)
 
     # ------------------------------------------------------------------ sweeps
 
@@ -157,26 +163,45 @@ class VideoFeed:
         if self._source is None:
             self._source = int(found.source[0])
         kept = []
-        rows = zip(found.source.tolist(), found.sequence.tolist(), strict=True)
-        for row, (source, sequence) in enumerate(rows):
+        columns = (found.source, found.sequence, found.azimuth_rad)
+        rows = zip(*(one.tolist() for one in columns), strict=True)
+        for row, (source, sequence, azimuth_rad) in enumerate(rows):
             if source != self._source:
                 problems.add("other radar", f"source {divmod(source, 256)} at this input")
-                continue
-            if sequence >= 0 and self._sequence >= 0:
-                half = _SEQUENCES // 2
-                step = (sequence - self._sequence + half) % _SEQUENCES - half
-                if step == 0:
-                    self.duplicates += 1
-                    continue
-                if -_LATE < step < 0:
-                    self.late += 1
-                    continue
-                if step > 0:
-                    self.lost += step - 1
-            self._sequence = sequence
-            kept.append(row)
+            elif self._continues(sequence, azimuth_rad, problems):
+                self._sequence, self._kept_rad = sequence, azimuth_rad
+                kept.append(row)
         self.sweeps += len(kept)
         return np.array(kept, dtype=np.int64)
+
+    def _continues(self, sequence: int, azimuth_rad: float, problems: Problems) -> bool:
+        """Whether a sweep is neither late nor there already, by the sender's count."""
+        if sequence < 0 or self._sequence < 0:
+            return True
+        half = _SEQUENCES // 2
+        step = (sequence - self._sequence + half) % _SEQUENCES - half
+        if step == 0 and azimuth_rad != self._kept_rad:
+            if "message count" not in problems.count:
+                problems.add("message count", f"the sender's count stays {sequence}")
+            return True
+        if -_LATE < step <= 0:
+            if sequence in self._missing:
+                self._missing.remove(sequence)
+                self.late += 1
+            else:
+                self.duplicates += 1
+            return False
+        self._miss(step, sequence)
+        return True
+
+    def _miss(self, step: int, sequence: int) -> None:
+        """Note the numbers that a step of the count leaves out; what is too old is lost."""
+        recent = range(max(step - _LATE, 1), step)
+        self._missing.extend((self._sequence + k) % _SEQUENCES for k in recent)
+        self.lost += max(step - 1 - len(recent), 0)
+        while self._missing and (sequence - self._missing[0]) % _SEQUENCES >= _LATE:
+            self._missing.popleft()
+            self.lost += 1
 
     def _times_of(self, time_of_day_s: np.ndarray, received_s: np.ndarray) -> np.ndarray:
         if not math.isfinite(time_of_day_s[0]):
@@ -187,7 +212,7 @@ class VideoFeed:
 
     # ------------------------------------------------------------------ plots
 
-    def take(self, sweeps: Sweeps) -> Iterator[PlotRow | Sector]:
+    def take(self, sweeps: Sweeps, problems: Problems) -> Iterator[PlotRow | Sector]:
         """Take sweeps of one geometry in order; plots and sectors that end with them."""
         if self.show is not None:
             cells = sweeps.amplitude
@@ -198,6 +223,7 @@ class VideoFeed:
                 sweeps.start_range_m + sweeps.cell_m * cells.shape[1],
                 cells,
             )
+        self._follow(sweeps.azimuth_rad)
         silent = sweeps.time_s[0] - self._time_s > _SILENT_S
         self._time_s = float(sweeps.time_s[-1])
         self.range_m = sweeps.start_range_m + sweeps.cell_m * sweeps.amplitude.shape[1]
@@ -206,14 +232,24 @@ class VideoFeed:
         if self._extractor is None and not self._learn(sweeps):
             return
         plots = self._extractor.process(sweeps.video())
+        if self._clockwise < 0:
+            problems.add("anticlockwise", "an antenna that turns anticlockwise cannot be used live")
+            return
         yield from _rows(plots)
         yield from self._sectors(sweeps)
+
+    def _follow(self, azimuth_rad: np.ndarray) -> None:
+        """Follow the sense of rotation, over some sweeps."""
+        steps_rad = np.diff(azimuth_rad, prepend=self._azimuth_rad)
+        turns_on = np.sign(np.sin(steps_rad[np.isfinite(steps_rad)])).sum()
+        self._clockwise = int(np.clip(self._clockwise + turns_on, -_STEPS, _STEPS))
+        self._azimuth_rad = float(azimuth_rad[-1])
 
     def _begin(self, sweeps: Sweeps) -> Iterator[PlotRow]:
         """Begin anew, with the settings of before where cells are alike."""
         if self._extractor is not None:
             yield from _rows(self._extractor.finish())
-        self._geometry, self._edge_rad, self._azimuth_rad = sweeps.geometry, math.nan, math.nan
+        self._geometry, self._edge_rad = sweeps.geometry, math.nan
         kind = Kind.of(sweeps.video())
         if self._kind is None or not kind.fits(self._kind):
             self._extractor, self._kind = None, kind
@@ -245,7 +281,7 @@ class VideoFeed:
             self._edge_rad = (first_rad - 0.5 * sweeps.width_rad) % _TAU
         behind_rad = min(self._extractor.open_extent_rad, _BEHIND_RAD)
         passed_rad = (last_rad + 0.5 * sweeps.width_rad - behind_rad - self._edge_rad) % _TAU
-        if passed_rad > math.pi or passed_rad < _SECTOR_RAD:
+        if not _SECTOR_RAD <= passed_rad < _TAU - _BACK_RAD:
             return
         rate = _rate_rad_s(sweeps)
         time_s = float(sweeps.time_s[-1])
