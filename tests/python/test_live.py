@@ -991,6 +991,29 @@ def test_rubbish_is_counted_and_named():
     assert inputs["x"]["problems"] == {"unknown": 1}
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("time_s", 1.8e12),
+        ("range_m", 1e300),
+        ("range_m", math.nan),
+        ("range_std_m", 0.0),
+        ("bearing_std_rad", -1.0),
+        ("range_std_m", None),
+    ],
+)
+def test_a_plot_that_cannot_be_used_is_a_problem_with_the_name_of_its_value(name, value):
+    plot = {"time_s": 0.0, "range_m": 1.0, "bearing_rad": 1.0}
+    plot |= {"range_std_m": 5.0, "bearing_std_rad": 0.01, name: value}
+    if value is None:  # one without the other
+        del plot[name]
+    session = wl.live.Session()
+    session.feed(0.0, "x", json.dumps(plot).encode())
+    status = session.status()
+    assert status["radars"]["A"]["plots"] == 0
+    assert name in status["inputs"]["x"]["last_problem"]
+
+
 # ------------------------------------------------------------------ other senders
 
 
@@ -1010,12 +1033,15 @@ def test_signalk_gives_own_ship_and_vessels():
     other = "vessels.urn:mrn:imo:mmsi:211000002"
     session.feed(0.2, "sk", delta(other, **{"navigation.position": place, "": {"name": "NOOR"}}))
     session.feed(0.2, "sk", b"[]")
+    assert "object" in session.status()["inputs"]["sk"]["last_problem"]
+    session.feed(0.2, "sk", b'{"updates": null}')
+    assert "updates" in session.status()["inputs"]["sk"]["last_problem"]
     picture = session.picture()
     assert picture["own"]["vnorth_mps"] == pytest.approx(5.0)
     assert picture["own"]["heading_rad"] == pytest.approx(0.1)
     (vessel,) = picture["ais"]
     assert (vessel["mmsi"], vessel["name"]) == (211000002, "NOOR")
-    assert session.status()["inputs"]["sk"]["problems"] == {"Signal K": 1}
+    assert session.status()["inputs"]["sk"]["problems"] == {"Signal K": 2}
 
 
 def test_a_vessel_that_reports_from_a_track_names_it_in_the_picture():
@@ -1351,6 +1377,8 @@ def test_printed_settings_read_back_the_same(tmp_path):
         ({"input": [{"url": "ftp://x"}]}, "ftp"),
         ({"input": [{"url": "udp://x:1", "format": "cat999"}]}, "format"),
         ({"input": [{"url": "udp://x:1", "radar": "B"}]}, "radar"),
+        ({"input": [{"url": "udp://x:1?foramt=nmea"}]}, "foramt"),
+        ({"output": [{"url": "tcp://x:1?iface=127.0.0.1"}]}, "iface"),
         ({"input": [{"url": "udp://x:1"}, {"url": "udp://x:1"}]}, "udp://x:1"),
         ({"radar": [{"name": "A", "range_std": 1.0}]}, "range_std"),
         ({"own": {"dwell_s": -1.0}}, "dwell_s"),

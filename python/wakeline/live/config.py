@@ -38,6 +38,7 @@ SENTENCES = {
     "turn": ("ROT",),
 }
 AZIMUTHS = ("north", "bow")
+_OF_SCHEME = {"udp": ("iface",), "serial": ("baud",)}  # what a URL's query may have beside settings
 
 
 _SECTIONS = ("session", "own", "input", "output", "radar", "guard_zone")
@@ -471,7 +472,14 @@ def _take_query(values: Any, names: Sequence[str], schemes: Sequence[str]) -> No
         raise SettingsError(
             f"url must begin with one of {', '.join(schemes)} and a colon, got {quoted(values.url)}"
         )
-    query = parse_qs(url.query)
+    query = parse_qs(url.query, keep_blank_values=True)
+    known = (*names, *_OF_SCHEME.get(url.scheme, ()))
+    for key in query:
+        if key not in known:
+            raise SettingsError(
+                f"unknown key {quoted(key)} in the query of {quoted(values.url)}; "
+                f"known: {', '.join(known)}"
+            )
     for name in names:
         if name in query and not getattr(values, name):
             object.__setattr__(values, name, query[name][-1])

@@ -10,9 +10,9 @@ In::
                 "longitude_deg": 10.2, "course_rad": 1.0, "speed_mps": 4.0}}
 
 `bearing_rad` is clockwise from the origin that the radar is configured with; `range_std_m` and
-`bearing_std_rad` of a plot are optional. A position may be `north_m` and `east_m` instead, from the
-origin of the session. `radar` may be left out where the input has one. A line with
-``"version"`` other than 1 is rejected.
+`bearing_std_rad` of a plot are both given or both left out. A position may be `north_m` and
+`east_m` instead, from the origin of the session. `radar` may be left out where the input has one. A
+line with ``"version"`` other than 1 is rejected.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 VERSION = 1
+_LIMIT = 1e12  # of any number
 
 
 class _Rules(NamedTuple):
@@ -55,6 +56,7 @@ _RULES = {
     "plot": _Rules(
         frozenset(("time_s", "range_m", "bearing_rad", "range_std_m", "bearing_std_rad")),
         frozenset(("time_s", "range_m", "bearing_rad")),
+        pairs=(("range_std_m", "bearing_std_rad"),),
     ),
 }
 _NESTED = ("sector", "own", "report")
@@ -113,8 +115,11 @@ def _checked(kind: str, values: Mapping[str, Any]) -> dict[str, Any]:
         if name in numbers:
             if type(value) not in (float, int):
                 raise BadLine(f"wanted a number in {name}, got {type(value).__name__}")
-            if not abs(value) < 1e12:
-                raise BadLine(f"wanted a finite number in {name}, got {str(value)[:20]}")
+            if not abs(value) < _LIMIT:
+                wanted = f"a number from {-_LIMIT:g} to {_LIMIT:g} in {name}"
+                raise BadLine(f"wanted {wanted}, got {str(value)[:20]}")
+            if "_std_" in name and value <= 0.0:
+                raise BadLine(f"wanted {name} above 0, got {value}")
             checked[name] = float(value)
         elif name in texts:
             checked[name] = str(value)[:64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from .nmea import OwnReading
@@ -42,12 +42,12 @@ class SignalkDecoder:
         try:
             delta = json.loads(octets)
             if not isinstance(delta, Mapping):
-                raise TypeError("wanted an object")
+                raise TypeError(f"wanted an object, got {json.dumps(delta)[:40]}")
             if isinstance(delta.get("self"), str):
                 self._own.add(delta["self"].removeprefix("vessels."))
                 self._own.add(f"vessels.{delta['self'].removeprefix('vessels.')}")
             values = list(_values(delta))
-        except (ValueError, RecursionError, TypeError, AttributeError) as error:
+        except (ValueError, RecursionError, TypeError) as error:
             problems.add("Signal K", str(error))
             return
         context = str(delta.get("context", ""))
@@ -98,9 +98,17 @@ _OF_VESSEL = {
 
 
 def _values(delta: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    for update in delta.get("updates", ()):
-        for one in update.get("values", ()):
+    for update in _objects(delta, "updates"):
+        for one in _objects(update, "values"):
             yield str(one.get("path", "")), one.get("value")
+
+
+def _objects(given: Mapping[str, Any], name: str) -> Sequence[Mapping[str, Any]]:
+    """The objects in a list, which may be left out."""
+    found = given.get(name, [])
+    if not isinstance(found, list) or not all(isinstance(one, Mapping) for one in found):
+        raise TypeError(f"wanted a list of objects in {name}, got {json.dumps(found)[:40]}")
+    return found
 
 
 def _vessel(values: list[tuple[str, Any]]) -> dict[str, Any]:
