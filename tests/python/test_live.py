@@ -1319,6 +1319,34 @@ def test_a_datagram_may_have_octets_before_its_sentence():
         assert len(readings([start + fix], "udp://127.0.0.1:1")[0]) == 1
 
 
+@pytest.mark.parametrize(
+    "radar", [{"position_deg": [54.0, 10.0]}, {"azimuth": "bow", "forward_m": 30.0}]
+)
+def test_plots_given_by_their_places_on_earth_are_tracked_there(radar):
+    inputs = [{"url": "udp://127.0.0.1:1?name=x"}]
+    own = {"place_deg": [54.0, 10.0], "fixed_heading_deg": 40.0}
+    radars = [radar | {"name": "A", "period_s": 2.5}]
+    session = wl.live.Session({"input": inputs, "radar": radars, "own": own})
+    place_deg = 54.02, 10.03
+    place = b"".join(round(one / 180.0 * 2**31).to_bytes(4, "big") for one in place_deg)
+    for k in range(12):
+        t = 1e6 + 2.5 * k
+        time = round(128.0 * (t % 86400.0)).to_bytes(3, "big")
+        session.feed(t + 0.1, "x", b"\x0a\x00\x13\xf8\x19\x07\x01\x60" + time + place)
+        session.feed(t + 2.4, "x", b"\x0a\x00\x0a\xd0\x19\x07\x02" + time)
+    assert session.status()["inputs"]["x"]["problems"] == {}
+    (track,) = session.picture()["tracks"]
+    north_m, east_m = session.to_plane(*place_deg)
+    assert math.hypot(track["north_m"] - north_m, track["east_m"] - east_m) < 5.0
+
+
+def test_places_of_plots_without_that_of_the_radar_are_a_problem():
+    session = wl.live.Session()
+    plot = b"\x0a\x00\x13\xf8\x19\x07\x01\x60\x00\x00\x00" + bytes(8)
+    session.feed(0.0, "x", plot)
+    assert sum(session.status()["inputs"]["x"]["problems"].values()) == 1
+
+
 def test_messages_of_redundant_groups_count_once():
     inputs = [{"url": f"udp://127.0.0.1:1?name={name}", "radar": "A"} for name in "ab"]
     session = wl.live.Session({"input": inputs, "radar": [{"name": "A", "azimuth": "north"}]})

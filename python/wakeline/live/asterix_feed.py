@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from wakeline import wire
 
 from .problems import Problems
-from .radar_feed import PlotRow, Sector
+from .radar_feed import PlacedPlot, PlotRow, Sector
 
 CATEGORIES = (10, 34, 48)
 VIDEO = 240
@@ -121,7 +121,9 @@ class AsterixFeed:
         self._edge_rad = math.nan
         self._edge_s = -math.inf
 
-    def feed(self, time_s: float, octets: bytes, problems: Problems) -> Iterator[PlotRow | Sector]:
+    def feed(
+        self, time_s: float, octets: bytes, problems: Problems
+    ) -> Iterator[PlotRow | PlacedPlot | Sector]:
         """Take a datagram; its plots, and the sectors that end with it."""
         found = self._decoder.decode(octets, time_s)
         for _, text, item in found.problems:
@@ -132,10 +134,12 @@ class AsterixFeed:
             found.time_s.tolist(),
             found.range_m.tolist(),
             found.bearing_rad.tolist(),
+            found.latitude_rad.tolist(),
+            found.longitude_rad.tolist(),
             found.test.tolist(),
             strict=True,
         )
-        for kind, source, at_s, range_m, bearing_rad, is_test in rows:
+        for kind, source, at_s, range_m, bearing_rad, *place_rad, is_test in rows:
             if self._source is None:
                 self._source = source
             if source != self._source:
@@ -147,6 +151,8 @@ class AsterixFeed:
                     self.test_plots += 1
                 elif math.isfinite(range_m + bearing_rad):
                     yield PlotRow(when_s, range_m, bearing_rad)
+                elif math.isfinite(sum(place_rad)):
+                    yield PlacedPlot(when_s, *place_rad)
             elif kind == _NORTH:
                 yield from self._pass_to(0.0, when_s)
             elif math.isfinite(bearing_rad):

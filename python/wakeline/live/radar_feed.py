@@ -24,6 +24,14 @@ class PlotRow(NamedTuple):
     bearing_var_rad2: float = 0.0
 
 
+class PlacedPlot(NamedTuple):
+    """A plot as a position on the earth."""
+
+    time_s: float
+    latitude_rad: float
+    longitude_rad: float
+
+
 class Sector(NamedTuple):
     """A part of the antenna's turn with its plots."""
 

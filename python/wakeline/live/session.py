@@ -25,7 +25,7 @@ from .engine import TrackEngine
 from .metrics import metrics_of
 from .outputs import Output, make_output
 from .own_ship import Missing, OwnShipSources, Pose, SourceKey
-from .radar_feed import PlotRow, RadarFeed, Sector, columns
+from .radar_feed import PlacedPlot, PlotRow, RadarFeed, Sector, columns
 from .shown import Shown
 from .sources import Receivers, Source
 from .watch import AlarmWatcher
@@ -313,15 +313,36 @@ class Session:
         else:
             self._take_json_report(time_s, source, values)
 
-    def _take_radar(self, time_s: float, source: Source, one: PlotRow | Sector) -> None:
+    def _take_radar(
+        self, time_s: float, source: Source, one: PlotRow | PlacedPlot | Sector
+    ) -> None:
         """Take a plot or a sector of the radar of an input, on the session's clock."""
         feed = self._feed_of(source, "")
         if feed is None:
             return
+        if isinstance(one, PlacedPlot):
+            one = self._measured(self.radars[feed.name], one)
+            if isinstance(one, Missing):
+                source.problems.add("plot's position", f"not used: {one.reason}")
+                return
         if isinstance(one, PlotRow):
             self._sectors(feed, feed.add(one))
         else:
             self._sectors(feed, feed.mark(one.from_rad, one.to_rad, one.time_s))
+
+    def _measured(self, radar: RadarConfig, plot: PlacedPlot) -> PlotRow | Missing:
+        """A plot as the radar measures it from its place."""
+        from_bow = radar.azimuth == "bow"
+        antenna = self._antenna(radar, plot.time_s, needs_heading=from_bow)
+        if isinstance(antenna, Missing):
+            return antenna
+        if self.plane is None:
+            return Missing("no origin yet")
+        pose, own = antenna
+        north_m, east_m = self.to_plane(*map(math.degrees, plot[1:]))
+        north_m, east_m = north_m - own.north_m, east_m - own.east_m
+        bearing_rad = math.atan2(east_m, north_m) - (pose.heading_rad if from_bow else 0.0)
+        return PlotRow(plot.time_s, math.hypot(north_m, east_m), bearing_rad % (2.0 * math.pi))
 
     def _feed_of(self, source: Source, radar: str) -> RadarFeed | None:
         """The radar of that name, else that of the input, else the first."""
