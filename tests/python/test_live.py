@@ -1376,7 +1376,10 @@ def test_messages_of_redundant_groups_count_once():
 def test_printed_settings_read_back_the_same(tmp_path):
     config = config_of(
         {
-            "input": [{"url": "udp://0.0.0.0:10110?name=boat&format=nmea"}],
+            "input": [
+                {"url": "udp://0.0.0.0:10110?name=boat&format=nmea"},
+                {"url": "udp://239.0.0.1:8600?sac_sic=25/1"},
+            ],
             "output": [{"url": "file:x.jsonl"}, {"url": "udp://127.0.0.1:1"}],
             "radar": [{"name": "A", "azimuth": "bow", "forward_m": 3.0, "period_s": 2.5}],
             "own": {"position": ["GGA", "@boat"], "dwell_s": 4.0},
@@ -1406,6 +1409,9 @@ def test_printed_settings_read_back_the_same(tmp_path):
         ({"input": [{"url": "udp://x:1", "format": "cat999"}]}, "format"),
         ({"input": [{"url": "udp://x:1", "radar": "B"}]}, "radar"),
         ({"input": [{"url": "udp://x:1?foramt=nmea"}]}, "foramt"),
+        ({"input": [{"url": "udp://x:1?sac_sic=25"}]}, "sac_sic"),
+        ({"radar": [{"sac_sic": "25/256"}]}, "sac_sic"),
+        ({"radar": [{"name": name, "sac_sic": "25/1"} for name in "AB"]}, "25/1"),
         ({"output": [{"url": "tcp://x:1?iface=127.0.0.1"}]}, "iface"),
         ({"input": [{"url": "udp://x:1"}, {"url": "udp://x:1"}]}, "udp://x:1"),
         ({"radar": [{"name": "A", "range_std": 1.0}]}, "range_std"),

@@ -131,6 +131,41 @@ def test_of_two_radars_on_one_group_the_first_counts():
     assert status["radars"]["A"]["sectors"] == alone.status()["radars"]["A"]["sectors"]
 
 
+GROUP = "udp://239.1.1.1:8600"
+
+
+@pytest.mark.parametrize("first", [7, 8])
+@pytest.mark.parametrize(
+    ("inputs", "sources"),
+    [
+        ([f"{GROUP}?sac_sic=25/7&radar=A", f"{GROUP}?sac_sic=025/008&radar=B"], ("", "")),
+        ([GROUP], ("25/7", "25/8")),
+        ([f"{GROUP}?name=a&radar=A", f"{GROUP}?name=b&radar=B"], ("25/7", "25/8")),
+    ],
+)
+def test_radars_on_one_group_are_told_apart_by_their_sources(inputs, sources, first):
+    """By the source that an input takes, or by that of each radar."""
+    radars = [
+        {"name": name, "position_deg": [54.0 + 0.1 * k, 10.0], "sac_sic": sources[k]}
+        for k, name in enumerate("AB")
+    ]
+    session = wl.live.Session({"input": [{"url": url} for url in inputs], "radar": radars})
+    for turn in range(10):
+        t = 1e6 + 2.5 * turn
+        time = round(128.0 * (t % 86400.0)).to_bytes(3, "big")
+        for system in (first, 15 - first):
+            source = bytes([25, system])
+            plot = b"\x30\x00\x0e\xf0" + source + time + b"\x20\x02\x29\x20" + bytes([system])
+            mark = b"\x22\x00\x0c\xe8" + source + b"\x01" + time + b"\x01\x40"
+            for name in session.inputs:
+                session.feed(t + 0.1, name, plot)
+                session.feed(t + 0.1, name, mark)
+    status = session.status()
+    assert [one["plots"] for one in status["radars"].values()] == [10, 10]
+    assert [one["problems"] for one in status["inputs"].values()] == [{}] * len(inputs)
+    assert len(session.picture()["tracks"]) == 2
+
+
 def test_a_peer_that_vanishes_is_found_gone(monkeypatch):
     """A connection of which no end was sent ends by probes: at an input and at an output."""
     monkeypatch.setattr(network, "PROBES", {"TCP_KEEPIDLE": 1, "TCP_KEEPINTVL": 1})

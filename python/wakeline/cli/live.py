@@ -43,7 +43,7 @@ udp://GROUP:PORT?iface=ADDRESS, tcp://HOST:PORT, tcp-listen://HOST:PORT,
 serial:/dev/NAME?baud=38400, stdin:, file:PATH and pcap:PATH. Outputs are udp,
 tcp, tcp-listen, serial, file:PATH and stdout:. What an input sends is recognized;
 ?format= of an input or output states it, ?radar= of an input names its radar,
-?name= names it in the status.
+?sac_sic=25/1 takes ASTERIX of one source, ?name= names it in the status.
 
 Without --demo, --replay or inputs there is nothing to do. One status line is
 printed a second; SIGTERM and Ctrl-C end the session cleanly.

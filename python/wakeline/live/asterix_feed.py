@@ -50,6 +50,21 @@ def _is_chain(octets: bytes, at: int) -> bool:
     return False
 
 
+def split(octets: bytes) -> Iterator[bytes]:
+    """The blocks of a datagram; what follows a damaged header is one."""
+    while octets:
+        length = _length_at(octets, 0)
+        length = length if length >= _HEAD else len(octets)
+        yield octets[:length]
+        octets = octets[length:]
+
+
+def source_of(block: bytes) -> str:
+    """Area and system of the first record of a block, as SAC/SIC; empty where it has none."""
+    has_source = len(block) > _HEAD and block[_HEAD] & 0x80
+    return "/".join(map(str, _source_at(block, 0))) if has_source else ""
+
+
 def _source_at(octets: bytes, at: int) -> bytes:
     """Area and system of the first record of a block."""
     at += _HEAD

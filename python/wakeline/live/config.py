@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -74,22 +75,26 @@ class InputConfig:
         ``udp://HOST:PORT``, ``udp://GROUP:PORT?iface=ADDRESS``, ``tcp://HOST:PORT``,
         ``tcp-listen://HOST:PORT``, ``serial:/dev/NAME?baud=38400``, ``stdin:``, ``file:PATH``,
         ``pcap:PATH``, ``signalk://HOST:PORT``, or ``signalk://HOST:PORT/radars/ID`` for the
-        spokes of a radar; ``name``, ``format`` and ``radar`` may be given as its query.
+        spokes of a radar; the other settings may be given as its query.
     name : str
-        The name in the status; default the URL without its query.
+        The name in the status; default the URL without its query, with `sac_sic`.
     format : str
         One of `IN_FORMATS`; empty: recognized by the octets.
     radar : str
         Name of the radar of video or plots that do not name one; default the first.
+    sac_sic : str
+        Only messages of ASTERIX of this source are taken: area and system, as ``25/1``.
     """
 
     url: str = _key("", "Where data come from: udp://0.0.0.0:10110, tcp://HOST:PORT, ...")
     name: str = _key("", "Name in the status; empty: the URL without its query.")
     format: str = _key("", f"One of {', '.join(filter(None, IN_FORMATS))}; empty: recognized.")
     radar: str = _key("", "Radar of its video or plots where they name none; empty: the first.")
+    sac_sic: str = _key("", "Only ASTERIX of this source, such as 25/1, is taken; empty: all.")
 
     def __post_init__(self) -> None:
-        _take_query(self, ("name", "format", "radar"), IN_SCHEMES)
+        _take_query(self, ("name", "format", "radar", "sac_sic"), IN_SCHEMES)
+        _check_sac_sic(self)
         if self.scheme == "signalk":
             kind = "spokes" if urlsplit(self.url).path.startswith("/radars/") else "signalk"
             object.__setattr__(self, "format", kind)
@@ -152,6 +157,9 @@ class RadarConfig:
         Latitude and longitude of a radar ashore; default aboard own ship.
     forward_m, starboard_m : float
         Position of the antenna aboard, from the reference point of own ship.
+    sac_sic : str
+        Source of its messages of ASTERIX, as ``25/1``: these are its at inputs that name no radar,
+        and it has no others.
     settings : dict of str to float
         Keys of ``[radar]`` of :class:`wakeline.tracking.Settings`.
     """
@@ -163,9 +171,11 @@ class RadarConfig:
     )
     forward_m: float = _key(0.0, "Antenna forward of own ship's reference point. [m]")
     starboard_m: float = _key(0.0, "Antenna to starboard of the reference point. [m]")
+    sac_sic: str = _key("", "Source of its ASTERIX, such as 25/1; empty: the first of its input.")
     settings: Mapping[str, float] = _key({}, "")
 
     def __post_init__(self) -> None:
+        _check_sac_sic(self)
         _check_choice("azimuth", self.azimuth, AZIMUTHS)
         _check_place("position_deg", self.position_deg)
 
@@ -308,6 +318,7 @@ class LiveConfig:
             object.__setattr__(self, name, named)
         object.__setattr__(self, "radars", tuple(self.radars) or (RadarConfig(),))
         check_once("radars", [radar.name for radar in self.radars])
+        check_once("sac_sic of radars", [one.sac_sic for one in self.radars if one.sac_sic])
         for one in self.inputs:
             if one.radar:
                 _check_choice("radar", one.radar, [radar.name for radar in self.radars])
@@ -486,7 +497,18 @@ def _take_query(values: Any, names: Sequence[str], schemes: Sequence[str]) -> No
 
 
 def _named(one: Any) -> Any:
-    return one if one.name else replace(one, name=one.url.partition("?")[0])
+    parts = one.url.partition("?")[0], getattr(one, "sac_sic", "")
+    return one if one.name else replace(one, name=" ".join(filter(None, parts)))
+
+
+def _check_sac_sic(values: Any) -> None:
+    """Check the source of ASTERIX that is wanted, and write it in one way."""
+    numbers = re.fullmatch(r"(\d{1,3})/(\d{1,3})", values.sac_sic)
+    pair = [int(one) for one in numbers.groups()] if numbers else []
+    if values.sac_sic and (not pair or max(pair) > 255):
+        wanted = "two numbers from 0 to 255, such as 25/1"
+        raise SettingsError(f"sac_sic must be {wanted}, got {quoted(values.sac_sic)}")
+    object.__setattr__(values, "sac_sic", "/".join(map(str, pair)))
 
 
 def _check_choice(name: str, value: str, choices: Sequence[str]) -> None:
@@ -506,4 +528,4 @@ def check_once(name: str, names: Sequence[str]) -> None:
     """Raise `SettingsError` when a name is there twice."""
     twice = sorted({one for one in names if names.count(one) > 1})
     if twice:
-        raise SettingsError(f"{name} must have different names, got {quoted(twice[0])} twice")
+        raise SettingsError(f"{name} must be different, got {quoted(twice[0])} twice")

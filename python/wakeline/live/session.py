@@ -127,7 +127,10 @@ class Session:
         bow = {one.name for one in self.config.radars if one.azimuth == "bow"}
         if self.config.radars[0].name in bow:
             bow.add("")  # inputs that name no radar have the first
-        self._shared = Receivers(from_bow=frozenset(bow))
+        sac_sic = {one.name: one.sac_sic for one in self.config.radars if one.sac_sic}
+        if self.config.radars[0].sac_sic:
+            sac_sic[""] = self.config.radars[0].sac_sic
+        self._shared = Receivers(from_bow=frozenset(bow), sac_sic=sac_sic)
         self.inputs = {one.name: Source(one, self._shared) for one in self.config.inputs}
         self.outputs: dict[str, Output] = {}
         for one in self.config.outputs:
@@ -198,8 +201,9 @@ class Session:
             one = self.inputs.get(source) or self._new_input(source)
             for kind, values in one.read(time_s, octets):
                 self._take(time_s, one, kind, values)
-            if one.video is not None and one.video.show is None and self.sweeps:
-                one.video.show = partial(self._show, one)
+            for radar, video in one.videos.items():
+                if video.show is None and self.sweeps:
+                    video.show = partial(self._show, one, radar)
         self._pass(time_s)
 
     def _new_input(self, name: str) -> Source:
@@ -314,10 +318,11 @@ class Session:
             self._take_json_report(time_s, source, values)
 
     def _take_radar(
-        self, time_s: float, source: Source, one: PlotRow | PlacedPlot | Sector
+        self, time_s: float, source: Source, found: tuple[str, PlotRow | PlacedPlot | Sector]
     ) -> None:
-        """Take a plot or a sector of the radar of an input, on the session's clock."""
-        feed = self._feed_of(source, "")
+        """Take a plot or a sector of a radar, on the session's clock."""
+        radar, one = found
+        feed = self._feed_of(source, radar)
         if feed is None:
             return
         if isinstance(one, PlacedPlot):
@@ -389,10 +394,15 @@ class Session:
     # ------------------------------------------------------------------ sectors
 
     def _show(
-        self, source: Source, azimuth_rad: np.ndarray, range_m: float, cells: np.ndarray
+        self,
+        source: Source,
+        radar: str,
+        azimuth_rad: np.ndarray,
+        range_m: float,
+        cells: np.ndarray,
     ) -> None:
-        """Give sweeps to those who show them."""
-        feed = self._feed_of(source, "")
+        """Give sweeps of a radar to those who show them."""
+        feed = self._feed_of(source, radar)
         if feed is None:
             return
         heading = None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from wakeline.wire import SensorClock
 
-from .asterix_feed import VIDEO, AsterixFeed, BlockAssembly
+from .asterix_feed import VIDEO, AsterixFeed, BlockAssembly, source_of, split
 from .config import InputConfig
 from .json_lines import BadLine, read_line
 from .lines import LineAssembly
@@ -81,13 +82,22 @@ class RecentMessages:
 
 @dataclass
 class Receivers:
-    """What the inputs of a session share, by the names of radars; some measure from the bow."""
+    """What the inputs of a session share, by the names of radars; some measure from the bow.
+
+    Radars with a SAC/SIC are in `sac_sic`. Inputs that name no radar have "", which is the first.
+    """
 
     video: dict[str, VideoFeed] = field(default_factory=dict)
     plots: dict[str, AsterixFeed] = field(default_factory=dict)
     spokes: dict[str, SpokeFeed] = field(default_factory=dict)
     recent: RecentMessages = field(default_factory=RecentMessages)
     from_bow: frozenset[str] = frozenset()
+    sac_sic: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def radar_of(self) -> dict[str, str]:
+        """Radars by their SAC/SIC."""
+        return {source: name for name, source in self.sac_sic.items() if name}
 
 
 class Source:
@@ -102,6 +112,8 @@ class Source:
         Messages dropped because another sender of the same data was first.
     clock : SensorClock
         Of times in JSON lines.
+    videos : dict of str to VideoFeed
+        By the names of their radars.
     last_s : float
     connection : str
     failing : bool
@@ -115,7 +127,7 @@ class Source:
         self.last_s = -math.inf
         self.connection = ""
         self.failing = False
-        self.video: VideoFeed | None = None
+        self.videos: dict[str, VideoFeed] = {}
         self._signalk = SignalkDecoder()
         self._format = config.format
         self._unsure, self._unsure_s = b"", -math.inf
@@ -198,48 +210,74 @@ class Source:
                     yield ("vessel" if isinstance(reading, VesselReading) else "own"), reading
         elif kind == "spokes":
             for each in self._spoke_feed().feed(time_s, octets, self.problems):
-                yield "radar", each
+                yield "radar", (self.radar, each)
         elif kind in _ASTERIX:
-            blocks = self._blocks.feed(octets, self.problems) if self.config.is_stream else [octets]
-            for block in blocks:
+            for block in self._blocks_in(octets):
                 yield from self._read_block(kind, time_s, block)
 
+    @property
+    def _selects(self) -> bool:
+        """Whether messages are taken by their sources."""
+        return bool(self.config.sac_sic or self._shared.sac_sic)
+
+    def _blocks_in(self, octets: bytes) -> Iterable[bytes]:
+        if self.config.is_stream:
+            return self._blocks.feed(octets, self.problems)
+        return split(octets) if self._selects else [octets]
+
     def _read_block(self, kind: str, time_s: float, block: bytes) -> Iterator[tuple[str, Any]]:
-        if not self._shared.recent.is_new(time_s, self.radar, block):
+        radar = self._radar_of(source_of(block)) if self._selects else self.radar
+        if radar is None:
+            return
+        if not self._shared.recent.is_new(time_s, radar, block):
             self.duplicates += 1
             return
         if not self.config.format:
             kind = "cat240" if block[0] == VIDEO else "cat048"
-        for each in self._receiver(kind).feed(time_s, block, self.problems):
-            yield "radar", each
+        for each in self._receiver(kind, radar).feed(time_s, block, self.problems):
+            yield "radar", (radar, each)
+
+    def _radar_of(self, source: str) -> str | None:
+        """The radar that a message of a source is of; None if it is of none at this input."""
+        shared = self._shared
+        if self.config.sac_sic:
+            return self.radar if source == self.config.sac_sic else None
+        named = shared.radar_of.get(source)
+        if named is not None:
+            return named if self.radar in ("", named) else None
+        if self.radar not in shared.sac_sic:
+            return self.radar
+        self.problems.add("other radar", f"source {source or 'without SAC/SIC'} at this input")
+        return None
 
     def _spoke_feed(self) -> SpokeFeed:
         feeds = self._shared.spokes
         if self.radar not in feeds:
             feeds[self.radar] = SpokeFeed(self.radar in self._shared.from_bow)
-        self.video = feeds[self.radar].video
+        self.videos[self.radar] = feeds[self.radar].video
         return feeds[self.radar]
 
-    def _receiver(self, kind: str) -> VideoFeed | AsterixFeed:
-        """What decodes the messages of its radar."""
+    def _receiver(self, kind: str, radar: str) -> VideoFeed | AsterixFeed:
+        """What decodes the messages of a radar."""
+        shared = self._shared
         if kind in _PLOTS:
-            if self.radar not in self._shared.plots:
-                self._shared.plots[self.radar] = AsterixFeed()
-            return self._shared.plots[self.radar]
-        if self.video is None:
-            self.video = self._shared.video.setdefault(self.radar, VideoFeed())
-        return self.video
+            if radar not in shared.plots:
+                shared.plots[radar] = AsterixFeed()
+            return shared.plots[radar]
+        if radar not in self.videos:
+            self.videos[radar] = shared.video.setdefault(radar, VideoFeed())
+        return self.videos[radar]
 
     def pass_to(self, time_s: float) -> Iterator[tuple[str, Any]]:
         """What ends by time alone."""
-        if self.video is not None:
-            for each in self.video.pass_to(time_s, self.problems):
-                yield "radar", each
+        for radar, video in self.videos.items():
+            for each in video.pass_to(time_s, self.problems):
+                yield "radar", (radar, each)
 
     def status(self, time_s: float) -> dict[str, Any]:
         """Counts, rates, age and problems."""
         messages, octets = self.rate.per_s(time_s)
-        video = self.video
+        videos = self.videos.values()
         return {
             "url": self.config.url,
             "format": self._format,
@@ -250,9 +288,9 @@ class Source:
             "messages_per_s": round(messages, 2),
             "octets_per_s": round(octets, 1),
             "age_s": time_s - self.last_s,
-            "duplicates": self.duplicates + (video.duplicates if video else 0),
-            "lost_sweeps": video.lost if video else 0,
-            "late_sweeps": video.late if video else 0,
+            "duplicates": self.duplicates + sum(one.duplicates for one in videos),
+            "lost_sweeps": sum(one.lost for one in videos),
+            "late_sweeps": sum(one.late for one in videos),
             "problems": dict(self.problems.count),
             "last_problem": self.problems.last,
         }
