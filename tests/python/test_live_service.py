@@ -8,6 +8,7 @@ import os
 import random
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -19,7 +20,9 @@ from aiohttp import web
 
 import wakeline as wl
 from harbor import RANGE_M, Harbor
+from test_cli_navigate import sentence as sentence_of
 from test_live import written
+from test_recording_containers import ipv4, tcp
 from wakeline.cli import main
 from wakeline.live import network
 from wakeline.live.config import (
@@ -256,6 +259,33 @@ def test_files_and_captures_end(taken, tmp_path):
     one = opened(f"pcap:{capture}", taken)
     until(lambda: one.is_done)
     assert taken[-1][1] == b"datagram"
+
+
+def test_a_connection_in_a_capture_is_a_stream(taken, tmp_path):
+    """Segments cut lines, two change places, one comes twice and one was not recorded."""
+    lines = [sentence_of(f"GPGLL,5400.{k:03},N,01000.000,E,,A").encode() for k in range(40)]
+    stream = b"".join(line + b"\r\n" for line in lines)
+    segments = [(at, stream[at : at + 27]) for at in range(0, len(stream), 27)]
+    segments[5], segments[6] = segments[6], segments[5]
+    segments.insert(9, segments[8])
+    (lost,) = segments[-8:-7]
+    segments.remove(lost)
+    capture = struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 101)
+    for at, part in segments:
+        (frame,) = ipv4(tcp(part, 1000 + at), 6)
+        capture += struct.pack("<4I", 0, 0, len(frame), len(frame)) + frame
+    path = tmp_path / "x.pcap"
+    path.write_bytes(capture)
+    one = opened(f"pcap:{path}", taken)
+    until(lambda: one.is_done)
+    assert taken.octets == stream[: lost[0]] + stream[lost[0] + len(lost[1]) :]
+    session = wl.live.Session({"input": [{"url": f"pcap:{path}"}]})
+    for name, octets in taken:
+        session.feed(0.0, name, octets)
+    (status,) = (one for one in session.status()["inputs"].values() if one["messages"])
+    (fixes,) = session.status()["own"]["position"]["sources"]
+    assert 36 <= fixes["count"] < 40
+    assert sum(status["problems"].values()) > 0
 
 
 def test_a_serial_line(taken):

@@ -39,6 +39,7 @@ SENTENCES = {
     "turn": ("ROT",),
 }
 AZIMUTHS = ("north", "bow")
+CONNECTION = " from "  # between the names of an input and of a peer of it
 _OF_SCHEME = {"udp": ("iface",), "serial": ("baud",)}  # what a URL's query may have beside settings
 
 
@@ -108,7 +109,9 @@ class InputConfig:
     @property
     def is_stream(self) -> bool:
         """Whether octets come without the borders of messages."""
-        return self.scheme not in ("", "udp", "pcap", "signalk")
+        if self.scheme == "pcap":
+            return CONNECTION in self.name
+        return self.scheme not in ("", "udp", "signalk")
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from wakeline.recording import RecordingError
 from wakeline.recording.containers import datagrams_of
 
 from . import signalk
-from .config import InputConfig, OutputConfig, SettingsError
+from .config import CONNECTION, InputConfig, OutputConfig, SettingsError
 from .lines import append_whole
 from .problems import in_words
 
@@ -273,7 +273,7 @@ class NetworkInput(_Thread):
             return
         one.setblocking(False)
         _probe(one)
-        clients[one] = f"{self.config.name} from {host}:{port}"
+        clients[one] = self._name_of(f"{host}:{port}")
 
     def _receive(self, one: socket.socket, name: str) -> bool:
         try:
@@ -328,17 +328,17 @@ class NetworkInput(_Thread):
 
     def _pcap(self) -> bool:
         self.connection = "reading"
-        return self._paced((one.time_s, one.octets) for one in self._capture)
+        return self._paced((one.time_s, one.octets, one.connection) for one in self._capture)
 
     def _paced(
-        self, messages: Iterable[tuple[float | None, bytes]], longest_s: float = math.inf
+        self, messages: Iterable[tuple[float | None, bytes, str]], longest_s: float = math.inf
     ) -> bool:
-        """Take messages as far apart as their times are, but for longer steps.
+        """Take messages of peers as far apart as their times are, but for longer steps.
 
         One without a time comes with the one before.
         """
         last_s = offset_s = math.nan
-        for time_s, octets in messages:
+        for time_s, octets, peer in messages:
             if time_s is not None:
                 if not abs(time_s - last_s) <= longest_s:
                     offset_s = now_s() - time_s
@@ -346,8 +346,11 @@ class NetworkInput(_Thread):
                 self._ends.wait(max(time_s + offset_s - now_s(), 0.0))
             if self._ends.is_set():
                 return True
-            self._take(self.config.name, [(now_s(), octets)])
+            self._take(self._name_of(peer), [(now_s(), octets)])
         return True
+
+    def _name_of(self, peer: str) -> str:
+        return f"{self.config.name}{CONNECTION}{peer}" if peer else self.config.name
 
     def _signalk(self) -> bool:
         self.connection = "connecting"
@@ -367,15 +370,15 @@ class NetworkInput(_Thread):
         return self._url.netloc + self._url.path
 
 
-def _timed_lines(file: BinaryIO) -> Iterator[tuple[float | None, bytes]]:
+def _timed_lines(file: BinaryIO) -> Iterator[tuple[float | None, bytes, str]]:
     """The lines of a file, or pieces of longer ones, with the times in them."""
     last = b"\n"
     while octets := file.readline(_PIECE):
         found = _TIME.search(octets)
-        yield float(found[1]) if found else None, octets
+        yield float(found[1]) if found else None, octets, ""
         last = octets[-1:]
     if last != b"\n":
-        yield None, b"\n"
+        yield None, b"\n", ""
 
 
 class NetworkOutput(_Thread):

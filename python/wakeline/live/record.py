@@ -253,7 +253,7 @@ def read_session(path: str | Path, *, last_segment: bool = False) -> Iterator[Re
     is_session = False
     for segment in segments:
         pending = b""
-        for time_s, address, _, octets in datagrams_of(segment):
+        for time_s, address, _, octets, _ in datagrams_of(segment):
             if address != _SESSION:
                 if address not in names:
                     raise _no_session(segment)

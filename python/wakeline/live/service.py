@@ -15,6 +15,7 @@ from typing import Any, BinaryIO
 
 from wakeline.recording import RecordingError
 
+from .config import CONNECTION
 from .network import NetworkInput, NetworkOutput, close_all, now_s
 from .problems import in_words
 from .record import Record, Recorder, at_microsecond, lock, read_session, segments_of
@@ -182,7 +183,7 @@ class Service:
         """Feed what was recorded."""
         inputs = [one.name for one in self.session.config.inputs]
         try:
-            if record.input and inputs and record.input.partition(" from ")[0] not in inputs:
+            if record.input and inputs and record.input.partition(CONNECTION)[0] not in inputs:
                 raise ValueError(f"no input named {record.input}")
             with self.session.lock:
                 feed_record(self.session, record)

@@ -20,7 +20,15 @@ from wakeline.tracking import MODE_NAMES
 
 from . import json_lines
 from .ais import AisPicture, AisVessel
-from .config import LiveConfig, OutputConfig, RadarConfig, check_once, config_of, read_config
+from .config import (
+    CONNECTION,
+    LiveConfig,
+    OutputConfig,
+    RadarConfig,
+    check_once,
+    config_of,
+    read_config,
+)
 from .engine import TrackEngine
 from .metrics import metrics_of
 from .outputs import Output, make_output
@@ -36,7 +44,6 @@ Sweeps = Callable[[str, np.ndarray, float, float, np.ndarray], None]
 of the last cell, and cells (n, C) of uint8."""
 
 CLOCK = "clock"
-_CONNECTION = " from "  # between the names of an input that listens and of a peer
 _MOST_CONNECTIONS = 64
 _PUBLISH_S = 0.015, 1e-4  # between reports of tracks: least, and for each track
 _WIDE_RAD = 1.0  # a sector after which they are reported at once
@@ -208,8 +215,8 @@ class Session:
 
     def _new_input(self, name: str) -> Source:
         """An input of datagrams, or a connection to an input that listens."""
-        parent = self.inputs.get(name.partition(_CONNECTION)[0])
-        connections = [one for one in self.inputs if _CONNECTION in one]
+        parent = self.inputs.get(name.partition(CONNECTION)[0])
+        connections = [one for one in self.inputs if CONNECTION in one]
         if len(connections) >= _MOST_CONNECTIONS:
             del self.inputs[min(connections, key=lambda one: self.inputs[one].last_s)]
         if parent is None:
@@ -221,7 +228,7 @@ class Session:
 
     def url_of(self, name: str) -> str:
         """The URL of an input; '' of one that is not configured."""
-        one = self.inputs.get(name) or self.inputs.get(name.partition(_CONNECTION)[0])
+        one = self.inputs.get(name) or self.inputs.get(name.partition(CONNECTION)[0])
         return "" if one is None else one.config.url
 
     def _take(self, time_s: float, source: Source, kind: str, values: Any) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 from wakeline.wire import SensorClock
 
 from .asterix_feed import VIDEO, AsterixFeed, BlockAssembly, source_of, split
-from .config import InputConfig
+from .config import CONNECTION, InputConfig
 from .json_lines import BadLine, read_line
 from .lines import LineAssembly
 from .nmea import AisMessage, NmeaDecoder
@@ -145,7 +145,7 @@ class Source:
     @property
     def group(self) -> str:
         """Its name, or that of the input that a peer has connected to."""
-        return self.name.partition(" from ")[0]
+        return self.name.partition(CONNECTION)[0]
 
     @property
     def radar(self) -> str:

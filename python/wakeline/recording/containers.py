@@ -136,12 +136,16 @@ def video_of(path: str | Path, contents: Contents) -> Iterator[bytes]:
 
 
 class Datagram(NamedTuple):
-    """What a packet of a capture carries: when, to whom, and the octets."""
+    """What a packet of a capture carries: when, to whom, and the octets.
+
+    Octets of a connection, which is named, continue those before.
+    """
 
     time_s: float | None
     address: str
     port: int
     octets: bytes
+    connection: str = ""
 
 
 def datagrams_of(path: str | Path) -> Iterator[Datagram]:
@@ -158,12 +162,26 @@ def datagrams_of(path: str | Path) -> Iterator[Datagram]:
 
 def _datagrams_in(packets: Iterable[_Packet]) -> Iterator[Datagram]:
     fragments, connections = _Fragments(), _Connections()
+    flows: dict[tuple, Datagram] = {}
     for packet in packets:
         payload = _payload_of(packet, fragments) if packet.whole else None
         if payload is not None:
             _, _, address, _, port = payload.receiver.split()
+            form = Datagram(packet.time_s, address, int(port), b"", _connection(payload))
+            flows[payload.flow or ()] = form
             for octets in connections.in_order(payload):
-                yield Datagram(packet.time_s, address, int(port), octets)
+                yield form._replace(octets=octets)
+    for flow, octets in connections.rest():
+        yield flows[flow]._replace(octets=octets)
+
+
+def _connection(payload: _Payload) -> str:
+    """The peers of a segment; empty for a datagram."""
+    if payload.flow is None:
+        return ""
+    source, from_port, receiver, to_port = payload.flow
+    ends = (source, from_port), (receiver, to_port)
+    return " to ".join(f"{ipaddress.ip_address(address)}:{port}" for address, port in ends)
 
 
 def instead_of_text(octets: bytes) -> str | None:
@@ -612,7 +630,23 @@ class _Connections:
         ahead = self._ahead.setdefault(flow, {})
         ahead[payload.sequence] = octets
         if len(ahead) > _MOST_AHEAD:  # what is missing was not recorded
-            self._next[flow] = min(ahead, key=lambda sequence: self._after(flow, sequence))
+            self._skip(flow)
+        yield from self._ready(flow)
+
+    def rest(self) -> Iterator[tuple[tuple, bytes]]:
+        """Flows, and their octets after what is missing at the end of a capture."""
+        for flow, ahead in self._ahead.items():
+            while ahead:
+                self._skip(flow)
+                for octets in self._ready(flow):
+                    yield flow, octets
+
+    def _skip(self, flow: tuple) -> None:
+        ahead = self._ahead[flow]
+        self._next[flow] = min(ahead, key=lambda sequence: self._after(flow, sequence))
+
+    def _ready(self, flow: tuple) -> Iterator[bytes]:
+        ahead = self._ahead[flow]
         while True:
             ready = [sequence for sequence in ahead if self._after(flow, sequence) <= 0]
             if not ready:
