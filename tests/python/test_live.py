@@ -7,6 +7,7 @@ import math
 import re
 import shutil
 import subprocess
+import time
 from functools import reduce
 from operator import xor
 from pathlib import Path
@@ -26,6 +27,7 @@ from wakeline.live.lines import LineAssembly
 from wakeline.live.nmea import AisMessage, NmeaDecoder
 from wakeline.live.own_ship import Missing, OwnShipSources, SourceKey
 from wakeline.live.problems import Problems
+from wakeline.live.recognition import format_in_stream
 from wakeline.live.sources import Source
 from wakeline.live.video_feed import Sweeps, VideoFeed
 from wakeline.tracking.settings import SettingsError
@@ -1313,6 +1315,13 @@ def test_the_format_of_a_stream_is_recognized_anew():
     assert source.status(2.0)["format"] == "cat048"
 
 
+@pytest.mark.parametrize("unit", [b"\n", b"\n{", b'{"', b"$AAA,", b"0", b"\xf0\x00\x04\x81"])
+def test_long_streams_of_an_unknown_format_take_no_time(unit):
+    began_s = time.process_time()
+    format_in_stream((unit * (1 << 17))[: 1 << 17])
+    assert time.process_time() - began_s < 0.5
+
+
 def test_a_datagram_may_have_octets_before_its_sentence():
     fix = sentence_of("GPGLL,5400.000,N,01000.000,E,,A").encode()
     for start in (b"\n", b"\0", b"0", b'"', b"\xf0"):
@@ -1347,6 +1356,9 @@ def test_places_of_plots_without_that_of_the_radar_are_a_problem():
     assert sum(session.status()["inputs"]["x"]["problems"].values()) == 1
 
 
+LOSSES = ("lost", "late")
+
+
 def test_messages_of_redundant_groups_count_once():
     inputs = [{"url": f"udp://127.0.0.1:1?name={name}", "radar": "A"} for name in "ab"]
     session = wl.live.Session({"input": inputs, "radar": [{"name": "A", "azimuth": "north"}]})
@@ -1367,6 +1379,7 @@ def test_messages_of_redundant_groups_count_once():
     session.feed(1.0, "clock", b"")
     inputs = session.status()["inputs"]
     assert inputs["a"]["lost_sweeps"] == inputs["b"]["lost_sweeps"] == 0
+    assert all(f"wakeline_input_{name}_sweeps_total" in session.metrics() for name in LOSSES)
     assert inputs["a"]["duplicates"] + inputs["b"]["duplicates"] == 120
 
 

@@ -143,7 +143,7 @@ GROUP = "udp://239.1.1.1:8600"
         ([f"{GROUP}?name=a&radar=A", f"{GROUP}?name=b&radar=B"], ("25/7", "25/8")),
     ],
 )
-def test_radars_on_one_group_are_told_apart_by_their_sources(inputs, sources, first):
+def test_radars_on_one_group_are_distinguished_by_their_sources(inputs, sources, first):
     """By the source that an input takes, or by that of each radar."""
     radars = [
         {"name": name, "position_deg": [54.0 + 0.1 * k, 10.0], "sac_sic": sources[k]}

@@ -15,6 +15,7 @@ CATEGORIES = (10, 34, 48)
 VIDEO = 240
 _OURS = frozenset((*CATEGORIES, VIDEO))
 _ALL = _OURS | {*range(1, 34), 62, 63, 65, 150, 205, 247, 252}
+_CHAIN = 16  # blocks in which a source is there twice
 _HEAD = 3  # octets of the category and the length of a block
 # The header of a block of ours, whose first record has a source.
 _HEADER = re.compile(rb"[\n\"0\xf0](?=..[\x80-\xff])", re.DOTALL)
@@ -40,7 +41,9 @@ def chain_in(octets: bytes, begin: int = 0) -> int | None:
 
 def _is_chain(octets: bytes, at: int) -> bool:
     sources: set[bytes] = set()
-    while at + _HEAD < len(octets) and _begins_at(octets, at, _ALL):
+    for _ in range(_CHAIN):
+        if at + _HEAD >= len(octets) or not _begins_at(octets, at, _ALL):
+            return False
         if octets[at] in _OURS:
             source = _source_at(octets, at)
             if len(source) == 2 and source in sources:

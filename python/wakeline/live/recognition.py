@@ -7,8 +7,8 @@ import re
 from .asterix_feed import CATEGORIES, VIDEO, are_blocks, chain_in
 
 # A sentence of NMEA 0183 to its checksum or line end, and a line that is one JSON object.
-_SENTENCE = re.compile(rb"[$!][A-Z][A-Z0-9]{2,}[,*][ -~]*?(?:\*[0-9A-Fa-f]{2}|[\r\n])")
-_OBJECT = re.compile(rb'(?:^|[\r\n])\s*\{\s*"[^\r\n]*\}\s*[\r\n]')
+_SENTENCE = re.compile(rb'[$!][A-Z][A-Z0-9]{2,}[,*][ "#%-~]*?(?:\*[0-9A-Fa-f]{2}|[\r\n])')
+_OBJECT = re.compile(rb'(?:^|[\r\n])[ \t]*\{[ \t]*"[^\r\n]*\}[ \t]*[\r\n]')
 _HEADS = {b"$": "nmea", b"!": "nmea", b"\\": "nmea", b"{": "json"}
 
 
