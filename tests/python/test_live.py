@@ -20,6 +20,8 @@ from hypothesis import strategies as st
 import wakeline as wl
 from test_cli_navigate import sentence as sentence_of
 from wakeline._engine.video import Cat240Encoder
+from wakeline.extraction.plots import Extraction
+from wakeline.extraction.turns import Turn
 from wakeline.live.ais import AisPicture
 from wakeline.live.asterix_feed import BlockAssembly
 from wakeline.live.config import InputConfig, config_of
@@ -30,6 +32,7 @@ from wakeline.live.problems import Problems
 from wakeline.live.recognition import format_in_stream
 from wakeline.live.sources import Source
 from wakeline.live.video_feed import Sweeps, VideoFeed
+from wakeline.recording import RadarVideo
 from wakeline.tracking.settings import SettingsError
 from wakeline.wire import SensorClock
 
@@ -1210,6 +1213,32 @@ def test_the_same_message_a_turn_later_is_another_one():
     found = [list(source.read(1.25 * k + late_s, plot)) for k in range(9) for late_s in (0.0, 0.2)]
     assert [len(one) for one in found] == [1, 0] * 9
     assert source.duplicates == 9
+
+
+@pytest.mark.parametrize(("min_range_m", "seen"), [(0.0, 2), (15.0, 3), (300.0, 1)])
+def test_cells_nearer_than_a_radar_sees_give_no_plots(min_range_m, seen):
+    """By default those nearer than 40 m, live and in a file."""
+    settings = {"name": "A", "azimuth": "north", "min_range_m": min_range_m}
+    session = wl.live.Session({"radar": [settings], "own": {"place_deg": [54.0, 10.0]}})
+    rng, encoder, width_rad = np.random.default_rng(0), Cat240Encoder(1, 2), math.tau / 256
+    place = {"azimuth_width_rad": width_rad, "start_range_m": 0.0, "cell_m": 10.0}
+    extraction, in_file, turns = Extraction(min_range_m), [], 3
+    for turn in range(turns):
+        cells = rng.rayleigh(10.0, (256, 200)).clip(0, 45).astype(np.uint8)
+        for k, cell in ((50, 2), (100, 20), (150, 60)):
+            cells[k : k + 3, cell : cell + 2] = 250
+        azimuth_rad = (np.arange(256) + 0.5) * width_rad
+        time_s = 2.5 * (turn + np.arange(256) / 256)
+        for k in range(256):
+            part = slice(k, k + 1)
+            octets = encoder.encode(cells[part], azimuth_rad[part], time_s[part], **place)
+            session.feed(time_s[k], "video", octets)
+        video = RadarVideo(cells, azimuth_rad, time_s, *place.values())
+        in_file += extraction.plots_of(Turn([video])).range_m.tolist()
+    session.feed(2.5 * turns, "clock", b"")
+    assert len(in_file) == seen * turns
+    assert min(in_file) > min_range_m
+    assert session.status()["radars"]["A"]["plots"] == seen * (turns - 1)
 
 
 def test_the_status_says_how_far_the_clock_of_a_radar_server_is_off():

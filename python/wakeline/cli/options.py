@@ -91,6 +91,7 @@ def opened(arguments: argparse.Namespace, settings: Settings, **others: Any) -> 
         **{"recording": arguments.plots, "own": arguments.own} | others,
         period_s=settings.period_s,
         azimuth=arguments.azimuth,
+        min_range_m=settings.radar["min_range_m"],
         columns=columns_of(arguments),
     )
 

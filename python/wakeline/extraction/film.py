@@ -66,6 +66,7 @@ def read_plots_of_video(
     period_s: float | None = None,
     azimuth: str = "north",
     range_scale_m: float | None = None,
+    min_range_m: float = 0.0,
     columns: Mapping[str, str] | None = None,
     extraction: Extraction | None = None,
 ) -> VideoRecording:
@@ -77,7 +78,8 @@ def read_plots_of_video(
     `period_s` is the duration of a revolution. Azimuths count from `azimuth`, "north" or "bow", to
     which the heading of own ship's file is added; a note says if they look like those from the
     other one. Of several range scales in turn the one nearest to `range_scale_m` is read, by
-    default the longest. `columns` names columns of own ship's file. Plots are made by
+    default the longest. Cells nearer than `min_range_m`, by default 40 m or a tenth of a shorter
+    range scale, give no plots. `columns` names columns of own ship's file. Plots are made by
     `extraction`, or another object with its methods.
 
     Raises
@@ -91,7 +93,7 @@ def read_plots_of_video(
     check_azimuth(azimuth, own_path)
     path = Path(path)
     report = VideoReport()
-    extraction = extraction or Extraction()
+    extraction = extraction or Extraction(min_range_m)
     parts: list[list[_Seen]] = []
     begun = 0
     blocks = read_video(path, period_s=period_s, range_scale_m=range_scale_m, report=report)

@@ -12,7 +12,7 @@ import wakeline as wl
 from wakeline._brief import counted
 from wakeline.recording import RadarVideo
 
-from .settings import Kind, settings_for
+from .settings import Kind, seen_cells, settings_for
 from .turns import Turn
 
 _SWEEPS_FOR_DIRECTION = 16  # of the antenna
@@ -32,9 +32,16 @@ def joined(parts: Sequence[Plots]) -> Plots:
 
 
 class Extraction:
-    """Plots of consecutive revolutions, with settings estimated for each kind of video."""
+    """Plots of consecutive revolutions, with settings estimated for each kind of video.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    min_range_m : float
+        Cells that begin nearer give no plots; 0: 40 m, or a tenth of a shorter range scale.
+    """
+
+    def __init__(self, min_range_m: float = 0.0) -> None:
+        self._min_range_m = min_range_m
         self._extractor: wl.PlotExtractor | None = None
         self._kind: Kind | None = None
         self._settings: dict[Kind, dict[str, float]] = {}
@@ -45,6 +52,7 @@ class Extraction:
     def plots_of(self, turn: Turn) -> Plots:
         """Plots of the echoes that end in a revolution."""
         plots = []
+        turn = replace(turn, blocks=[seen_cells(one, self._min_range_m) for one in turn.blocks])
         for block in turn.blocks:
             kind = Kind.of(block)
             if self._kind is None or not kind.fits(self._kind) or self._turns_back(block):

@@ -13,6 +13,8 @@ from wakeline.recording import RadarVideo
 
 from .noise import Noise, noise_of
 
+_LEAST_RANGE_M = 40.0  # from which a ship's radar must detect (IMO MSC.192(79), 5.3.2)
+_LEAST_SHARE = 0.1  # of a short range scale
 _FALSE_ALARMS = 1e-5
 _TRAIN_M, _GUARD_M = 400.0, 150.0  # either side of a cell; ships are up to 300 m long
 _MOST_TRAIN_CELLS = 128
@@ -47,6 +49,15 @@ class Kind(NamedTuple):
         return self.dtype == other.dtype and all(
             abs(mine - its) <= _ALIKE * max(mine, its) for mine, its in windows
         )
+
+
+def seen_cells(video: RadarVideo, min_range_m: float) -> RadarVideo:
+    """The cells from `min_range_m`, or from 40 m or a tenth of the range scale where that is 0.
+
+    Near the antenna the cells are so many for their area that noise looks like a target.
+    """
+    range_m = video.start_range_m + video.cell_m * video.amplitude.shape[1]
+    return video.beyond(min_range_m or min(_LEAST_RANGE_M, _LEAST_SHARE * range_m))
 
 
 def settings_for(turn: RadarVideo, kind: Kind) -> tuple[dict[str, float], int]:

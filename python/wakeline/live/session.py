@@ -137,13 +137,16 @@ class Session:
         sac_sic = {one.name: one.sac_sic for one in self.config.radars if one.sac_sic}
         if self.config.radars[0].sac_sic:
             sac_sic[""] = self.config.radars[0].sac_sic
-        self._shared = Receivers(from_bow=frozenset(bow), sac_sic=sac_sic)
+        engine_radars = [one.make_radar(self.config.settings) for one in self.config.radars]
+        names = [one.name for one in self.config.radars]
+        least_m = {n: one.min_range_m for n, one in zip(names, engine_radars, strict=True)}
+        least_m[""] = least_m[names[0]]
+        self._shared = Receivers(from_bow=frozenset(bow), sac_sic=sac_sic, min_range_m=least_m)
         self.inputs = {one.name: Source(one, self._shared) for one in self.config.inputs}
         self.outputs: dict[str, Output] = {}
         for one in self.config.outputs:
             self.add_output(one)
         self.radars = {one.name: one for one in self.config.radars}
-        engine_radars = [one.make_radar(self.config.settings) for one in self.config.radars]
         self.tracker = TrackEngine(
             engine_radars, self.config.settings, self.config.session.window_s
         )

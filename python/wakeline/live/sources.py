@@ -85,6 +85,7 @@ class Receivers:
     """What the inputs of a session share, by the names of radars; some measure from the bow.
 
     Radars with a SAC/SIC are in `sac_sic`. Inputs that name no radar have "", which is the first.
+    `min_range_m` are the ranges from which they see targets.
     """
 
     video: dict[str, VideoFeed] = field(default_factory=dict)
@@ -93,6 +94,7 @@ class Receivers:
     recent: RecentMessages = field(default_factory=RecentMessages)
     from_bow: frozenset[str] = frozenset()
     sac_sic: Mapping[str, str] = field(default_factory=dict)
+    min_range_m: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def radar_of(self) -> dict[str, str]:
@@ -253,9 +255,13 @@ class Source:
     def _spoke_feed(self) -> SpokeFeed:
         feeds = self._shared.spokes
         if self.radar not in feeds:
-            feeds[self.radar] = SpokeFeed(self.radar in self._shared.from_bow)
+            from_bow = self.radar in self._shared.from_bow
+            feeds[self.radar] = SpokeFeed(from_bow, self._least_m(self.radar))
         self.videos[self.radar] = feeds[self.radar].video
         return feeds[self.radar]
+
+    def _least_m(self, radar: str) -> float:
+        return self._shared.min_range_m.get(radar, 0.0)
 
     def _receiver(self, kind: str, radar: str) -> VideoFeed | AsterixFeed:
         """What decodes the messages of a radar."""
@@ -265,7 +271,7 @@ class Source:
                 shared.plots[radar] = AsterixFeed()
             return shared.plots[radar]
         if radar not in self.videos:
-            self.videos[radar] = shared.video.setdefault(radar, VideoFeed())
+            self.videos[radar] = shared.video.setdefault(radar, VideoFeed(self._least_m(radar)))
         return self.videos[radar]
 
     def pass_to(self, time_s: float) -> Iterator[tuple[str, Any]]:

@@ -44,6 +44,8 @@ class SpokeFeed:
     from_bow : bool
         Whether angles from the bow are used; else bearings from north, which a server gives where
         it knows the heading.
+    min_range_m : float
+        As for :class:`VideoFeed`.
 
     Attributes
     ----------
@@ -51,8 +53,8 @@ class SpokeFeed:
     clock : SensorClock
     """
 
-    def __init__(self, from_bow: bool) -> None:
-        self.video = VideoFeed()
+    def __init__(self, from_bow: bool, min_range_m: float = 0.0) -> None:
+        self.video = VideoFeed(min_range_m)
         self.clock = self.video.clock
         self._from_bow = from_bow
         self._per_turn = 0

@@ -12,7 +12,7 @@ import numpy as np
 
 import wakeline as wl
 from wakeline._engine.video import Cat240Decoder, Cat240Sweeps
-from wakeline.extraction.settings import Kind, settings_for
+from wakeline.extraction.settings import Kind, seen_cells, settings_for
 from wakeline.recording import RadarVideo
 from wakeline.wire import SensorClock
 
@@ -72,6 +72,12 @@ class VideoFeed:
     first revolution, which gives no plots. A sector ends where the first echo that the beam
     has not left begins, which is a plot only later, and at most 0.1 rad behind the beam.
 
+    Parameters
+    ----------
+    min_range_m : float
+        As for :class:`wakeline.extraction.plots.Extraction`.
+    show : callable, optional
+
     Attributes
     ----------
     sweeps, lost, late, duplicates : int
@@ -80,7 +86,8 @@ class VideoFeed:
     clock : SensorClock
     """
 
-    def __init__(self, show: Show | None = None) -> None:
+    def __init__(self, min_range_m: float = 0.0, show: Show | None = None) -> None:
+        self._min_range_m = min_range_m
         self.sweeps = self.lost = self.late = self.duplicates = 0
         self.clock = SensorClock()
         self.show = show
@@ -94,7 +101,7 @@ class VideoFeed:
         self._extractor: wl.PlotExtractor | None = None
         self._kind: Kind | None = None
         self._geometry: tuple | None = None
-        self._trial: list[Sweeps] = []
+        self._trial: list[RadarVideo] = []
         self._trial_rad = 0.0
         self._azimuth_rad = self._kept_rad = math.nan
         self._clockwise = 0  # steps of the last sweeps, less those anticlockwise
@@ -227,11 +234,12 @@ class VideoFeed:
         silent = sweeps.time_s[0] - self._time_s > _SILENT_S
         self._time_s = float(sweeps.time_s[-1])
         self.range_m = sweeps.start_range_m + sweeps.cell_m * sweeps.amplitude.shape[1]
+        video = seen_cells(sweeps.video(), self._min_range_m)
         if sweeps.geometry != self._geometry or silent:
-            yield from self._begin(sweeps)
-        if self._extractor is None and not self._learn(sweeps):
+            yield from self._begin(sweeps.geometry, video)
+        if self._extractor is None and not self._learn(video):
             return
-        plots = self._extractor.process(sweeps.video())
+        plots = self._extractor.process(video)
         if self._clockwise < 0:
             problems.add("anticlockwise", "an antenna that turns anticlockwise cannot be used live")
             return
@@ -245,25 +253,25 @@ class VideoFeed:
         self._clockwise = int(np.clip(self._clockwise + turns_on, -_STEPS, _STEPS))
         self._azimuth_rad = float(azimuth_rad[-1])
 
-    def _begin(self, sweeps: Sweeps) -> Iterator[PlotRow]:
+    def _begin(self, geometry: tuple, video: RadarVideo) -> Iterator[PlotRow]:
         """Begin anew, with the settings of before where cells are alike."""
         if self._extractor is not None:
             yield from _rows(self._extractor.finish())
-        self._geometry, self._edge_rad = sweeps.geometry, math.nan
-        kind = Kind.of(sweeps.video())
+        self._geometry, self._edge_rad = geometry, math.nan
+        kind = Kind.of(video)
         if self._kind is None or not kind.fits(self._kind):
             self._extractor, self._kind = None, kind
             self._trial, self._trial_rad = [], 0.0
 
-    def _learn(self, sweeps: Sweeps) -> bool:
+    def _learn(self, video: RadarVideo) -> bool:
         """Estimate the settings of detection when a revolution is there."""
-        self._trial.append(sweeps)
-        self._trial_rad += sweeps.width_rad * len(sweeps.azimuth_rad)
+        self._trial.append(video)
+        self._trial_rad += video.azimuth_width_rad * len(video)
         octets = sum(one.amplitude.nbytes for one in self._trial)
         if self._trial_rad < _TRIAL_RAD and octets < _MOST_TRIAL:
             return False
         whole = replace(
-            self._trial[0].video(),
+            self._trial[0],
             amplitude=np.concatenate([one.amplitude for one in self._trial]),
             azimuth_rad=np.concatenate([one.azimuth_rad for one in self._trial]),
             time_s=np.concatenate([one.time_s for one in self._trial]),

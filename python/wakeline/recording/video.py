@@ -74,6 +74,15 @@ class RadarVideo:
         cells = many(self.amplitude.shape[1], "cell")
         return brief(self, many(len(self), "sweep"), f"of {cells}", span(self.time_s))
 
+    def beyond(self, range_m: float) -> RadarVideo:
+        """The cells that begin at a range or farther away; at least the last one."""
+        nearer = math.ceil((range_m - self.start_range_m) / self.cell_m - 1e-9)
+        first = min(nearer, self.amplitude.shape[1] - 1)
+        if first <= 0:
+            return self
+        start_range_m = self.start_range_m + first * self.cell_m
+        return replace(self, amplitude=self.amplitude[:, first:], start_range_m=start_range_m)
+
     def __getitem__(self, sweeps: slice) -> RadarVideo:
         """Some of the sweeps."""
         return replace(

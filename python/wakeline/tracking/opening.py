@@ -26,6 +26,7 @@ def open_recording(
     period_s: float | None = None,
     azimuth: str = "north",
     range_scale_m: float | None = None,
+    min_range_m: float = 0.0,
     columns: Mapping[str, str] | None = None,
 ) -> Recording:
     """Open a recording.
@@ -46,6 +47,8 @@ def open_recording(
         times of video.
     range_scale_m : float, optional
         The range scale to read of video with several in turn; default the longest.
+    min_range_m : float
+        Nearer cells of video give no plots; 0: 40 m, or a tenth of a shorter range scale.
     columns : dict of str to str, optional
         Names of columns in files of plots, own ship and truth and what they are, as for
         :func:`wakeline.recording.read_plots`.
@@ -81,6 +84,7 @@ def open_recording(
             period_s=period_s,
             azimuth=azimuth,
             range_scale_m=range_scale_m,
+            min_range_m=min_range_m,
             columns=columns,
         )
     return read_plots(path, own, truth, period_s=period_s, azimuth=azimuth, columns=columns)

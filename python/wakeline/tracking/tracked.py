@@ -232,7 +232,13 @@ def opened_with_settings(
 ) -> tuple[Recording, Settings]:
     """The recording and the settings of :func:`track_recording`."""
     settings = read_settings(config, radar, vessels)
-    opened = open_recording(recording, own, period_s=settings.period_s, azimuth=azimuth)
+    opened = open_recording(
+        recording,
+        own,
+        period_s=settings.period_s,
+        azimuth=azimuth,
+        min_range_m=settings.radar["min_range_m"],
+    )
     if not isinstance(radar, wl.Radar):
         settings = settings.knowing(opened.radar)
     return opened, settings
