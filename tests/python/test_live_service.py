@@ -478,6 +478,34 @@ def test_a_replay_at_any_speed_gives_the_same_lines(tmp_path, speed):
     assert took_s > 0.95 * length_s / speed
 
 
+@pytest.mark.parametrize("speed", [math.inf, 50.0])
+def test_a_replay_ends_when_it_is_stopped(tmp_path, speed):
+    path, ends = tmp_path / "s.pcap", threading.Event()
+    run_demo_like(path, range(5), time.time())
+    records = replay(path, speed, ends)
+    next(records)
+    ends.set()
+    assert list(records) == []
+
+
+def test_a_session_that_is_stopped_while_it_reads_its_record_leaves_it_as_it_is(tmp_path):
+    path = tmp_path / "s.pcap"
+    run_demo_like(path, range(5), time.time())
+    octets = path.read_bytes()
+    service = Service(wl.live.Session(LiveConfig(radars=(ASHORE,))), path)
+    service.stop()
+    service.run()
+    assert path.read_bytes() == octets
+
+
+def test_a_session_ends_in_time_whenever_its_status_is_printed(tmp_path):
+    settings = tmp_path / "live.toml"
+    settings.write_text("[session]\nstatus_s = 60\n")
+    began_s = time.monotonic()
+    assert main(["live", str(settings), "--in", "udp://127.0.0.1:0", "--for", "0.2"]) == 0
+    assert time.monotonic() - began_s < 3.0
+
+
 def test_late_data_and_segments_replay_bit_for_bit(tmp_path):
     path, rng, begin_s = tmp_path / "s.pcap", random.Random(2), time.time()
     turns = [turn(k, begin_s) for k in range(100)]
@@ -859,6 +887,11 @@ def read_tracks(folder):
         [],
         ["--in", "ftp://x"],
         ["--in", "udp://127.0.0.1"],
+        ["--in", "tcp://127.0.0.1"],
+        ["--in", "stdin:", "--out", "tcp://127.0.0.1"],
+        ["--in", "serial:/dev/null?baud=fast"],
+        ["--in", "pcap:missing.pcap", "--quiet"],
+        ["--in", "stdin:", "--for", "0"],
         ["--replay", "missing.pcap"],
         ["--in", "pcap:missing.pcap"],
         ["--in", "pcap:/"],

@@ -104,7 +104,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         help="place of a station that does not move, in degrees; default: own ship's instruments",
     )
     parser.add_argument(
-        "--for", dest="for_s", type=float, metavar="S", help="end after so many seconds"
+        "--for", dest="for_s", type=_seconds, metavar="S", help="end after so many seconds"
     )
     parser.add_argument("--quiet", action="store_true", help="print no status lines")
     parser.add_argument(
@@ -197,17 +197,16 @@ def _demo(arguments: argparse.Namespace, config: LiveConfig) -> None:
 
 def _serve(arguments: argparse.Namespace, service: Service, is_done: Any = lambda: False) -> None:
     """Run a service until it ends, with signals, status lines and the screen."""
-    ends_s = time.monotonic() + (arguments.for_s or math.inf)
 
     def report() -> None:
         if not arguments.quiet:
             print(status_line(service.session.status()), flush=True)
-        if time.monotonic() >= ends_s or is_done():
+        if is_done():
             service.stop()
 
     with contextlib.ExitStack() as stack:
         service.session.watchers[0].log = view.alarm_log(arguments, stack)
-        stack.enter_context(_stopped_by_signals(service.stop))
+        stack.enter_context(_stopped(service.stop, arguments.for_s))
         stack.enter_context(_screen(arguments, service.session))
         service.run(every_s=service.session.config.session.status_s or 1.0, report=report)
 
@@ -216,11 +215,7 @@ def _replay(arguments: argparse.Namespace, config: LiveConfig) -> None:
     """Replay a session to its end, or on a screen with a bar until it is stopped."""
     ends = threading.Event()
     with contextlib.ExitStack() as stack:
-        stack.enter_context(_stopped_by_signals(ends.set))
-        if arguments.for_s is not None:
-            timer = threading.Timer(arguments.for_s, ends.set)
-            stack.callback(timer.cancel)
-            timer.start()
+        stack.enter_context(_stopped(ends.set, arguments.for_s))
         outputs = [NetworkOutput(one) for one in config.outputs]
         stack.callback(close_all, outputs)
         for one in outputs:
@@ -277,15 +272,20 @@ def _screen(arguments: argparse.Namespace, session: Session | SessionPlayback) -
 
 
 @contextlib.contextmanager
-def _stopped_by_signals(stop: Any) -> Iterator[None]:
-    """Call `stop` on SIGTERM and Ctrl-C while the block runs, in the main thread."""
+def _stopped(stop: Any, for_s: float | None) -> Iterator[None]:
+    """Call `stop` on SIGTERM, Ctrl-C (in the main thread) or after a time, while the block runs."""
     previous = {}
+    timer = threading.Timer(for_s, stop) if for_s is not None else None
     with contextlib.suppress(ValueError):  # of another thread
         for one in (signal.SIGTERM, signal.SIGINT):
             previous[one] = signal.signal(one, lambda *_: stop())
     try:
+        if timer is not None:
+            timer.start()
         yield
     finally:
+        if timer is not None:
+            timer.cancel()
         for one, handler in previous.items():
             signal.signal(one, handler)
 
@@ -326,6 +326,13 @@ def status_line(status: dict[str, Any]) -> str:
     if status["frozen"]:
         parts.append(status["frozen"])
     return " | ".join(parts)
+
+
+def _seconds(text: str) -> float:
+    seconds = float(text)
+    if not 0.0 < seconds <= threading.TIMEOUT_MAX:
+        raise argparse.ArgumentTypeError(f"wanted a number above 0, got {text!r}")
+    return seconds
 
 
 def _speed(text: str) -> float:

@@ -66,17 +66,27 @@ now_s = _Clock()
 
 
 class _Thread(abc.ABC):
-    """The thread of an input or output, which ends when it is closed; listens at `tcp-listen`."""
+    """The thread of an input or output, which ends when it is closed; listens at `tcp-listen`.
+
+    Attributes
+    ----------
+    failure : RecordingError or None
+        Why it has ended before its file was read.
+    """
 
     def __init__(self, config: InputConfig | OutputConfig) -> None:
         self.config = config
         self.connection = "starting"
         self._error = ""
+        self.failure: RecordingError | None = None
         self.restarts = 0
         self._url, self._query = urlsplit(config.url), parse_qs(urlsplit(config.url).query)
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._run, name=config.name, daemon=True)
         self.port = self._url.port if self._url.netloc else None
+        if config.scheme in ("udp", "tcp", "tcp-listen") and self.port is None:
+            raise SettingsError(f"{config.url} needs a port")
+        self._baud = _whole_number(config.url, "baud", self._query.get("baud", ["4800"])[-1])
         self._datagrams: socket.socket | None = None
         self._listener: socket.socket | None = None
         with _naming(config.url):
@@ -122,7 +132,7 @@ class _Thread(abc.ABC):
                     return
                 self.connection = "closed by the other side"
             except RecordingError as error:
-                self.connection = self._error = str(error)
+                self.failure, self.connection, self._error = error, str(error), str(error)
                 return
             except (OSError, SettingsError) as error:
                 self.connection = self._error = in_words(error)
@@ -191,8 +201,6 @@ class NetworkInput(_Thread):
 
     def _udp_socket(self) -> socket.socket:
         host, port = self._url.hostname or "127.0.0.1", self._url.port
-        if port is None:
-            raise SettingsError(f"input {self.config.url} needs a port")
         one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         is_group = 224 <= int(host.split(".")[0] if host[0].isdigit() else 0) <= 239
         if is_group or _is_broadcast(host):  # every receiver has a copy
@@ -291,9 +299,8 @@ class NetworkInput(_Thread):
             import serial
         except ModuleNotFoundError:
             raise SettingsError(HOW_TO_GET_SERIAL) from None
-        path, baud = self._url.path, int(self._query.get("baud", ["4800"])[-1])
-        with serial.Serial(path, baud, timeout=_WAIT_S) as one:
-            self.connection = f"open at {baud} baud"
+        with serial.Serial(self._url.path, self._baud, timeout=_WAIT_S) as one:
+            self.connection = f"open at {self._baud} baud"
             while not self._ends.is_set():
                 octets = one.read(max(one.in_waiting, 1))
                 if octets:
@@ -427,8 +434,6 @@ class NetworkOutput(_Thread):
             super().join()
 
     def _udp_socket(self) -> socket.socket:
-        if self._url.port is None:
-            raise SettingsError(f"output {self.config.url} needs a port")
         one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         one.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
         interface = self._query.get("iface", [None])[-1]
@@ -480,9 +485,8 @@ class NetworkOutput(_Thread):
             import serial
         except ModuleNotFoundError:
             raise SettingsError(HOW_TO_GET_SERIAL) from None
-        baud = int(self._query.get("baud", ["4800"])[-1])
-        with serial.Serial(self._url.path, baud, write_timeout=5.0) as one:
-            self.connection = f"open at {baud} baud"
+        with serial.Serial(self._url.path, self._baud, write_timeout=5.0) as one:
+            self.connection = f"open at {self._baud} baud"
             self._waiting.clear()
             return self._each(one.write)
 
@@ -605,9 +609,13 @@ def _write_stdout(octets: bytes) -> None:
     sys.stdout.flush()
 
 
-def _listening(host: str, port: int | None) -> socket.socket:
-    if port is None:
-        raise SettingsError(f"tcp-listen://{host} needs a port")
+def _whole_number(url: str, key: str, text: str) -> int:
+    if not text.isdecimal():
+        raise SettingsError(f"{url}: {key} must be a whole number, got {text!r}")
+    return int(text)
+
+
+def _listening(host: str, port: int) -> socket.socket:
     one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     _bind(one, host, port)

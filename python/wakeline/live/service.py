@@ -132,6 +132,11 @@ class Service:
         every_s : float
             Interval at which `report` is called.
         report : callable, optional
+
+        Raises
+        ------
+        RecordingError
+            When all inputs have ended, one of them because its file cannot be read.
         """
         try:
             self._begin()
@@ -144,10 +149,14 @@ class Service:
                 done = self.inputs and all(one.is_done for one in self.inputs)
                 if done and self._waiting.empty():
                     break
+            self._take_note()
             if report is not None:
                 report()
         finally:
             self.close()
+        failures = [one.failure for one in self.inputs if one.failure is not None]
+        if failures and not self._ends.is_set():
+            raise failures[0]
 
     def stop(self) -> None:
         """End `run` soon; may be called by a signal handler."""
@@ -163,6 +172,8 @@ class Service:
                 board = self.session.watchers[0]
                 log, board.log = board.log, None  # which has what is recorded
                 for record in read_session(path, last_segment=True):
+                    if self._ends.is_set():
+                        return
                     self._continue(path, record)
                 self.session.note, board.log = "", log
             time_s = max(at_microsecond(now_s()), self.session.time_s)
@@ -282,8 +293,7 @@ def replay(
     for record in read_session(path):
         if begin_s is None:
             begin_s, start_s = record.time_s, time.monotonic()
-        if math.isfinite(speed):
-            due_s = start_s + (record.time_s - begin_s) / speed
-            if ends.wait(max(due_s - time.monotonic(), 0.0)):
-                return
+        due_s = start_s + (record.time_s - begin_s) / speed
+        if ends.wait(max(due_s - time.monotonic(), 0.0)):
+            return
         yield record
