@@ -381,14 +381,15 @@ def test_what_a_peer_does_not_read_in_time_is_dropped(scheme, monkeypatch):
 def test_a_file_has_all(tmp_path, monkeypatch):
     monkeypatch.setattr(network, "_LONGEST_WAIT_S", 0.0)
     one = NetworkOutput(OutputConfig(f"file:{tmp_path / 'f'}"))
-    for k in range(100):
-        one.send(b"%d\n" % k)
+    lines = [b"%0999d\n" % k for k in range(3000)]
+    for line in lines:
+        one.send(line)
     time.sleep(0.01)
     one.start()
-    until(lambda: one.sent == 100)
+    until(lambda: one.sent == len(lines))
     one.close()
     one.join()
-    assert (tmp_path / "f").read_bytes() == b"".join(b"%d\n" % k for k in range(100))
+    assert (tmp_path / "f").read_bytes() == b"".join(lines)
 
 
 def test_the_clock_does_not_go_back(monkeypatch):

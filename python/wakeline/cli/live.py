@@ -307,8 +307,9 @@ def status_line(status: dict[str, Any]) -> str:
             parts.append(f"{name} {radar['plots']} plots, {radar['age_s']:.1f} s")
     parts.append(f"{status['tracks']} tracks, {status['ais_vessels']} AIS")
     sent = sum(one["sent"] for one in status["outputs"].values())
+    dropped = sum(one["dropped"] for one in status["outputs"].values())
     if status["outputs"]:
-        parts.append(f"{sent} sent")
+        parts.append(f"{sent} sent" + (f", {dropped} dropped" if dropped else ""))
     lost = sum(one.get("lost_sweeps") or 0 for one in status["inputs"].values())
     wrong = sum(sum(one["problems"].values()) for one in status["inputs"].values())
     if lost or status["lost_batches"]:

@@ -41,6 +41,7 @@ _TIME = re.compile(rb'"time_s"\s*:\s*(-?\d{1,15}(?:\.\d*)?(?:[eE][-+]?\d{1,2})?)
 _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
 _MOST_QUEUED = 1 << 20  # octets that wait for a receiver
+_MOST_FOR_FILE = 64 << 20
 _LONGEST_WAIT_S = 5.0  # of a message for a receiver that is not a file
 _MOST_UNSENT = 1024  # octets in a socket that the network does not take
 PROBES = {"TCP_KEEPIDLE": 30, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 3}  # s, s, times
@@ -391,8 +392,9 @@ def _timed_lines(file: BinaryIO) -> Iterator[tuple[float | None, bytes, str]]:
 class NetworkOutput(_Thread):
     """One output of a session, sent in a thread.
 
-    What a receiver does not take waits, up to 1 MiB and, but for files, 5 s; beyond that the oldest
-    messages are dropped. A receiver that is connected has only what comes from then on.
+    What a receiver does not take waits, up to 5 s and 1 MiB; what a file does not, up to 64 MiB.
+    Beyond that the oldest messages are dropped. A receiver that is connected has only what comes
+    from then on.
 
     Parameters
     ----------
@@ -403,8 +405,10 @@ class NetworkOutput(_Thread):
         super().__init__(config)
         self.sent = self.dropped = 0
         self._counting = threading.Lock()
-        is_file = config.scheme in ("file", "stdout")
-        self._waiting = _Backlog(self._drop, math.inf if is_file else _LONGEST_WAIT_S)
+        if config.scheme in ("file", "stdout"):
+            self._waiting = _Backlog(self._drop, math.inf, _MOST_FOR_FILE)
+        else:
+            self._waiting = _Backlog(self._drop, _LONGEST_WAIT_S, _MOST_QUEUED)
 
     def send(self, octets: bytes) -> None:
         """Send a message; it never waits."""
@@ -532,10 +536,12 @@ class _Backlog:
         Called with the number of messages that are dropped.
     longest_s : float
         Longest time that a message waits.
+    most_octets : int
+        Of all messages together.
     """
 
-    def __init__(self, drop: Callable[[int], None], longest_s: float) -> None:
-        self._drop, self._longest_s = drop, longest_s
+    def __init__(self, drop: Callable[[int], None], longest_s: float, most_octets: int) -> None:
+        self._drop, self._longest_s, self._most_octets = drop, longest_s, most_octets
         self._messages = deque[tuple[float, bytes]]()
         self._octets = 0
         self._news = threading.Condition()
@@ -570,7 +576,9 @@ class _Backlog:
 
     def _forget(self) -> None:
         since_s = time.monotonic() - self._longest_s
-        while self._messages and (self._octets > _MOST_QUEUED or self._messages[0][0] < since_s):
+        while self._messages and (
+            self._octets > self._most_octets or self._messages[0][0] < since_s
+        ):
             self._pop()
             self._drop(1)
 
@@ -580,7 +588,7 @@ class _Client:
 
     def __init__(self, one: socket.socket, drop: Callable[[int], None]) -> None:
         self._socket, self._begun = one, b""
-        self.waiting = _Backlog(drop, _LONGEST_WAIT_S)
+        self.waiting = _Backlog(drop, _LONGEST_WAIT_S, _MOST_QUEUED)
 
     def flush(self) -> bool:
         """Send what the client takes; False if it is gone."""
