@@ -883,6 +883,61 @@ def test_a_wrong_second_of_ais_does_not_move_a_vessel():
     assert np.abs(taken[~lies]).mean() < 0.5
 
 
+def errors_m(delay_s, seconds=240):
+    """Errors of the tracks of a shore radar, with AIS so late or, without a delay, without."""
+    pyais = pytest.importorskip("pyais")
+    rng = np.random.default_rng(5)
+    begin_s, period_s, plane = (
+        1.7e9 // 60 * 60,
+        2.5,
+        wl.LocalPlane(latitude_rad=0.0, longitude_rad=0.0),
+    )
+    radar = {"name": "A", "position_deg": [0.0, 0.0], "bearing_std_deg": 0.5, "period_s": period_s}
+    session = wl.live.Session({"session": {"origin_deg": [0.0, 0.0]}, "radar": [radar]})
+    start = 4000.0 * np.exp(1j * np.linspace(0.3, 6.0, 8))
+    velocity = rng.uniform(4.0, 10.0, 8) * np.exp(1j * rng.uniform(0.0, 6.2, 8))
+    fed = []
+    for vessel, way in enumerate(velocity):
+        for t in range(int(rng.integers(10)), seconds if delay_s else 0, 10):
+            place = start[vessel] + way * t + 5.0 * complex(*rng.standard_normal(2))
+            fields = {"type": 1, "mmsi": 211000000 + vessel, "second": t % 60, "accuracy": 1}
+            degrees = np.degrees(plane.place(np.array([place.real, place.imag])))
+            fields |= {"lat": degrees[0], "lon": degrees[1], "heading": 511}
+            fields |= {"speed": abs(way) / 0.514444, "course": np.degrees(np.angle(way)) % 360.0}
+            body = pyais.encode_dict(fields)[0].replace("VDO", "VDM")[1:].partition("*")[0]
+            line = b"!%s*%02X\r\n" % (body.encode(), reduce(xor, body.encode()))
+            fed.append((t + 0.2 + rng.exponential(delay_s), "ais", line))
+    for k in range(8 * int(seconds / period_s)):
+        lines, turn_s = [], k // 8 * period_s
+        for place, way in zip(start + velocity * turn_s, velocity, strict=True):
+            share = np.angle(place) % math.tau / math.tau
+            if int(8 * share) == k % 8:
+                place += way * share * period_s
+                plot = {"radar": "A", "time_s": begin_s + turn_s + share * period_s}
+                plot["range_m"] = abs(place) + 10.0 * rng.standard_normal()
+                plot["bearing_rad"] = np.angle(place) + np.radians(0.5) * rng.standard_normal()
+                lines.append(plot)
+        end_s = (k + 1) * period_s / 8
+        sector = {"from_rad": k % 8 * math.tau / 8, "to_rad": (k % 8 + 1) * math.tau / 8}
+        lines.append({"radar": "A", "sector": sector | {"time_s": begin_s + end_s}})
+        fed.append((end_s, "radar", "".join(f"{json.dumps(one)}\n" for one in lines).encode()))
+    errors = []
+    for time_s, source, octets in sorted(fed):
+        session.feed(begin_s + time_s, source, octets)
+        if time_s < seconds / 2:
+            continue
+        for track in session.tracker.tracks():
+            found = complex(track.mean[0], track.mean[2])
+            errors.append(np.abs(start + velocity * (track.time_s - begin_s) - found).min())
+    return np.sqrt(np.mean(np.square(errors)))
+
+
+def test_ais_that_comes_late_makes_tracks_better():
+    alone = errors_m(0.0)
+    assert errors_m(1.5) < 0.95 * alone
+    assert errors_m(6.0) < alone
+
+
 def test_a_position_of_ais_that_comes_by_two_ways_is_one():
     fleet = ais_fleet(np.random.default_rng(4), soon)
     later = sorted(

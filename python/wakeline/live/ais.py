@@ -24,6 +24,7 @@ _POSITION_TYPES = (1, 2, 3, 4, 18, 19, 27)
 _CLASS_B = (18, 19, 24)
 _BASE_STATION = 4
 _OFTEN = 2  # so many stated times in a row must fit how far a vessel has moved
+_NEW = 6  # messages after which times that do not fit are wrong, not unknown
 _SLOW_MPS = 2.0  # too slow to tell times by how far a vessel has moved
 
 
@@ -144,6 +145,8 @@ class AisVessel:
         Its time by the second that the vessel states.
     stated_well : int
         Positions in a row whose stated times fit how far the vessel has moved.
+    late_m : float
+        How far it may have moved before its position was received, while that is not known.
     latitude_deg, longitude_deg, course_rad, speed_mps, heading_rad : float
     accurate : bool
         Whether it reports an error of the position below 10 m.
@@ -162,6 +165,7 @@ class AisVessel:
     received_s: float = -math.inf
     stated_s: float = math.nan
     stated_well: int = 0
+    late_m: float = 0.0
     latitude_deg: float = math.nan
     longitude_deg: float = math.nan
     course_rad: float = math.nan
@@ -187,7 +191,7 @@ class AisVessel:
     @property
     def position_std_m(self) -> float:
         """Standard deviation of its position, per axis."""
-        return 5.0 if self.accurate else 10.0
+        return math.hypot(5.0 if self.accurate else 10.0, self.late_m)
 
     @property
     def to_middle_m(self) -> tuple[float, float]:
@@ -307,7 +311,10 @@ def _take_position(vessel: AisVessel, received_s: float, stated_s: float, messag
     if fits and later_s < 0.5:
         return False  # known, or from before: by another way
     vessel.stated_well = vessel.stated_well + 1 if fits else 0
-    vessel.time_s = stated_s if vessel.stated_well >= _OFTEN else received_s
+    is_known = vessel.stated_well >= _OFTEN
+    vessel.time_s = stated_s if is_known else received_s
+    is_doubtful = not is_known and vessel.messages < _NEW and math.isfinite(stated_s)
+    vessel.late_m = speed_mps * (received_s - stated_s) if is_doubtful and slow else 0.0
     vessel.received_s, vessel.stated_s = received_s, stated_s
     vessel.latitude_deg, vessel.longitude_deg = latitude, longitude
     vessel.speed_mps, vessel.course_rad = speed_mps, course_rad

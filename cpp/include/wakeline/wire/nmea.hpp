@@ -166,9 +166,9 @@ struct NmeaTarget {
   double tcpa_s = kNone;  ///< negative in the past
   std::string_view name;
   bool lost = false;
+  double time_s = 0.0;     ///< UTC, since a midnight
   bool acquiring = false;  ///< not yet followed
   bool manual = false;     ///< acquired by the operator
-  double time_s = 0.0;     ///< UTC, since a midnight
 
   [[nodiscard]] std::string_view status() const noexcept {
     return lost ? "L" : acquiring ? "Q" : "T";
