@@ -210,7 +210,13 @@ class NetworkInput(_Thread):
             with contextlib.suppress(OSError):
                 one.setsockopt(socket.SOL_SOCKET, option, _RECEIVE_BUFFER)
                 break
-        _bind(one, host, port)
+        try:
+            _bind(one, host, port)
+        except OSError as error:
+            if error.errno != errno.EADDRINUSE:
+                raise
+            share = f"to share broadcasts, name their address: udp://192.168.1.255:{port}"
+            raise OSError(error.errno, f"{error.strerror}; {share}") from None
         if is_group:
             interface = self._query.get("iface", ["0.0.0.0"])[-1]
             member = struct.pack("4s4s", socket.inet_aton(host), socket.inet_aton(interface))
