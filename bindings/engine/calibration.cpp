@@ -132,7 +132,8 @@ void define_calibration(py::module_& m) {
       .def_property_readonly(
           "verdict", [](const CalibratedOffset& one) { return word_of(one.verdict); },
           "'determined', 'few matches' (too few plots of reported vessels, or no more than by "
-          "chance) or 'poor geometry' (the standard deviation is above the limit)")
+          "chance), 'poor geometry' (the standard deviation is above the limit) or 'near gate' (an "
+          "offset is above 0.8 of its gate)")
       .def_property_readonly("determined", &CalibratedOffset::determined,
                              "whether the value is good enough to be applied")
       .def(py::pickle(&offset_state, &offset_of))

@@ -159,6 +159,15 @@ def test_any_offsets_within_the_gate_are_found(range_m, bearing_deg, time_s):
     assert (np.abs(values(found) - offsets) < 5.0 * stds(found)).all()
 
 
+@pytest.mark.parametrize("offsets", [(0.0, np.radians(7.6), 0.0), (390.0, 0.0, 0.0)])
+def test_offsets_of_which_the_gate_cuts_plots_off_are_not_determined(offsets):
+    recording = scene(3, offsets, others=0, clutter=5.0)
+    found = calibrate(recording, reports_of(recording), radar=RADAR)
+    assert not found.range_m.determined
+    assert not found.bearing_rad.determined
+    assert found.bearing_rad.verdict == "near gate"
+
+
 def test_it_carries_over_to_another_run(recorded):
     found = calibrate(*recorded, radar=RADAR)
     other = scene(77)

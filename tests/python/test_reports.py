@@ -156,3 +156,68 @@ def test_a_part_that_makes_no_sense_is_rejected():
     with pytest.raises(ValueError, match="range_std_m"):
         tracker.ranges(time_s=EPOCH_S + 50.0, range_m=[1e3], range_std_m=np.nan)
     assert tracker.bearings(**good).plot_track_id.tolist() == [0]
+
+
+@pytest.mark.parametrize("ahead_s", [10.0, 60.0, 100.0])
+def test_a_clock_that_is_ahead_drags_no_track(ahead_s):
+    """Of AIS and of a camera, whose positions are right."""
+    rng = np.random.default_rng(7)
+    for of_camera in (False, True):
+        tracker, errors_m = wl.Tracker(RADAR), []
+
+        def each_turn(time_s, tracker=tracker, errors_m=errors_m, of_camera=of_camera):
+            if of_camera:
+                bearing_rad = np.arctan2(*at(time_s)[::-1]) + 0.003 * rng.normal()
+                values = {"bearing_rad": [bearing_rad], "bearing_std_rad": 0.003}
+                tracker.bearings(time_s=time_s + ahead_s, **values)
+            elif int((time_s - EPOCH_S) / 2.5) % 4 == 0:
+                tracker.report(**report(time_s) | {"time_s": time_s + ahead_s})
+            tracks = tracker.tracks(time_s=time_s)
+            if time_s > EPOCH_S + 60.0 and len(tracks.mean):
+                errors_m.append(np.hypot(*(tracks.mean[0, 0::2] - at(time_s))))
+
+        seen(tracker, rng, range(1, 80), each_turn)
+        assert len(errors_m) > 50
+        assert np.sqrt(np.mean(np.square(errors_m))) < 12.0
+
+
+def test_reports_of_vessels_go_on_where_radars_are_silent():
+    tracker, rng = wl.Tracker(RADAR), np.random.default_rng(8)
+    seen(tracker, rng, range(1, 30), lambda time_s: tracker.report(**report(time_s)))
+    for time_s in EPOCH_S + np.arange(85.0, 180.0, 10.0):
+        assert tracker.report(**report(time_s)).status == wl.Status.ok
+    last = tracker.tracks(time_s=EPOCH_S + 175.0)
+    assert np.hypot(*(last.mean[0, 0::2] - at(EPOCH_S + 175.0))) < 15.0
+
+
+@pytest.mark.parametrize("sectors", [1, 8])
+def test_a_vessel_behind_the_mast_keeps_its_track(sectors):
+    """It has no misses where the radar is said to be blind, by turns and by sectors."""
+    radar = wl.Radar(
+        range_std_m=10.0,
+        bearing_std_rad=0.01,
+        period_s=2.5,
+        blind_from_rad=np.radians(40.0),
+        blind_to_rad=np.radians(60.0),
+    )
+    tracker, rng = wl.Tracker(radar), np.random.default_rng(9)
+    misses = []
+    for turn in range(120):
+        bearing_rad = np.radians(30.0 + 0.3 * turn)
+        for k in range(sectors):
+            from_rad, to_rad = 2.0 * np.pi * k / sectors, 2.0 * np.pi * (k + 1) / sectors
+            end_s = 2.5 * (turn + (k + 1) / sectors)
+            behind_mast = 40.0 < 30.0 + 0.3 * turn < 60.0
+            seen_plots = int(from_rad <= bearing_rad < to_rad and not behind_mast)
+            plots = {
+                "range_m": [1500.0 + 10.0 * rng.normal()] * seen_plots,
+                "bearing_rad": [bearing_rad + 0.01 * rng.normal()] * seen_plots,
+            }
+            if sectors == 1:
+                tracker.process(end_s, **plots)
+            else:
+                tracker.sector(from_rad=from_rad, to_rad=to_rad, time_s=end_s, **plots)
+        if turn > 20:
+            assert tracker.tracks().track_id.tolist() == [1], turn
+            misses.append(tracker.tracks().misses[0])
+    assert max(misses) <= 3

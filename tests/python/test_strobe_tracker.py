@@ -139,10 +139,13 @@ def test_a_moving_own_ship_sees_the_same_tracks(turns):
         moving.designate(begin_s, *place(target, begin_s)[0])
     for turn in turns:
         still.process(turn)
-        own_m = 5.0 * (turn.time_s - begin_s)
+        own_m = 15.0 * (turn.time_s - begin_s)
         moving.process(turn, own_north_m=own_m)
     here, there = still.tracks(), moving.tracks()
-    np.testing.assert_allclose(there.mean[:, 1] - here.mean[:, 1], 5.0, atol=0.5)
+    way_m = 15.0 * (there.time_s - begin_s)
+    np.testing.assert_allclose(there.mean[:, 0] - way_m, here.mean[:, 0], atol=1.0)
+    np.testing.assert_allclose(there.mean[:, 2], here.mean[:, 2], atol=1.0)
+    np.testing.assert_allclose(there.mean[:, 1] - here.mean[:, 1], 15.0, atol=0.5)
     np.testing.assert_allclose(there.mean[:, 3], here.mean[:, 3], atol=0.5)
 
 

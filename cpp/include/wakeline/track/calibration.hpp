@@ -108,13 +108,15 @@ enum class CalibrationVerdict : std::uint8_t {
   kDetermined,
   kFewMatches,    ///< too few plots of reported vessels, or no more than by chance
   kPoorGeometry,  ///< its standard deviation is above the limit
+  kNearGate,      ///< it is so large that plots of the vessels may be outside the gate
 };
 
 /// Names of the verdicts.
-constexpr std::array<Word<CalibrationVerdict>, 3> words_of(CalibrationVerdict) noexcept {
+constexpr std::array<Word<CalibrationVerdict>, 4> words_of(CalibrationVerdict) noexcept {
   return {{{"determined", CalibrationVerdict::kDetermined},
            {"few matches", CalibrationVerdict::kFewMatches},
-           {"poor geometry", CalibrationVerdict::kPoorGeometry}}};
+           {"poor geometry", CalibrationVerdict::kPoorGeometry},
+           {"near gate", CalibrationVerdict::kNearGate}}};
 }
 
 /// One offset of the radar.
@@ -759,12 +761,16 @@ inline CalibrationResult Calibration::solve() const {
       result.vessels.push_back(
           {vessels_[v].last.vessel, s.matches[v], s.vessel_m[v][0], s.vessel_m[v][1]});
   const bool enough = s.total >= config_.min_matches && s.total >= kContrast * by_chance(s);
+  constexpr double kOfGate = 0.8;  // nearer to it, errors of plots have been cut off
+  const bool is_near_gate = std::abs(s.offsets[0]) > kOfGate * config_.range_gate_m ||
+                            std::abs(s.offsets[1]) > kOfGate * config_.bearing_gate_rad;
   const auto offset = [&](int k, double limit) -> CalibratedOffset {
     const double std = std::sqrt(s.covariance(k, k));
     return {s.offsets[k], std,
-            !enough        ? CalibrationVerdict::kFewMatches
-            : std <= limit ? CalibrationVerdict::kDetermined
-                           : CalibrationVerdict::kPoorGeometry};
+            !enough           ? CalibrationVerdict::kFewMatches
+            : !(std <= limit) ? CalibrationVerdict::kPoorGeometry
+            : is_near_gate    ? CalibrationVerdict::kNearGate
+                              : CalibrationVerdict::kDetermined};
   };
   result.range_m = offset(0, config_.max_range_std_m);
   result.bearing_rad = offset(1, config_.max_bearing_std_rad);

@@ -45,6 +45,35 @@ struct PositionReport {
   static constexpr std::size_t kMostSource = 15, kMostIdentity = 31;
 };
 
+/// Times of a source that reports, beside those of the scans.
+///
+/// A time far ahead of the last scan is that of a clock that is ahead, unless radars are silent:
+/// then no scan comes between reports of a source that are as far apart, or that were not ahead. A
+/// report ahead would take its track into the future, where no plot could correct it.
+class ReportClock {
+ public:
+  /// The time of a report: that of the last scan where it is ahead by more than so much.
+  [[nodiscard]] double operator()(double time_s, double scan_time_s, double most_s) noexcept {
+    const bool is_silent =
+        scan_time_s_ == scan_time_s && (!is_ahead_ || time_s - stated_s_ > most_s);
+    is_ahead_ = time_s > scan_time_s + most_s && !is_silent;
+    stated_s_ = time_s;
+    scan_time_s_ = scan_time_s;
+    return is_ahead_ ? scan_time_s : time_s;
+  }
+
+  void archive(Archive& fields) {
+    fields(stated_s_);
+    fields(scan_time_s_);
+    fields(is_ahead_);
+  }
+
+ private:
+  double stated_s_ = -std::numeric_limits<double>::infinity();     ///< of the last report
+  double scan_time_s_ = -std::numeric_limits<double>::infinity();  ///< of the last scan before it
+  bool is_ahead_ = false;                                          ///< it was
+};
+
 /// Whether reported positions move at the reported velocity.
 ///
 /// A position is predicted from report to report by the mean of both velocities, and corrected by
@@ -135,6 +164,7 @@ struct Identity {
 
   std::array<char, PositionReport::kMostSource + 1> source = {};
   std::array<char, PositionReport::kMostIdentity + 1> name = {};
+  ReportClock clock = {};
   double time_s = -std::numeric_limits<double>::infinity();  ///< of the last report
   double interval_s = 0.0;  ///< between the last two; 0 after the first
   Vec<double, 2> position_m = Vec<double, 2>::Zero();
@@ -224,6 +254,7 @@ struct Identity {
   void archive(Archive& fields) {
     fields(source);
     fields(name);
+    clock.archive(fields);
     fields(time_s);
     fields(interval_s);
     fields(position_m);

@@ -32,7 +32,9 @@ class PartialStages {
     if (!scan.is_valid()) return picture_.rejected(Status::kNotFinite);
     if (const Status status = picture_.status_of_time(scan.time_s); status != Status::kOk)
       return picture_.rejected(status);
-    double& before_s = picture_.partial_time_s[static_cast<std::size_t>(scan.sensor)];
+    const auto sensor = static_cast<std::size_t>(scan.sensor);
+    scan.time_s = picture_.time_of(picture_.partial_clock[sensor], scan.time_s);
+    double& before_s = picture_.partial_time_s[sensor];
     const double periods = std::abs(scan.time_s - before_s) / picture_.longest_period_s();
     scan.std /= std::sqrt(std::clamp(periods, kLeastPartialPeriods, 1.0));
     before_s = std::max(before_s, scan.time_s);

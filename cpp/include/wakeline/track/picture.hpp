@@ -77,6 +77,7 @@ struct Picture {
   std::int64_t next_tentative_id = -1;
   std::int64_t newest_before = 0;  ///< number of the newest tentative track before this scan
   std::array<double, kMostPartialSensors> partial_time_s = never();  ///< when each gave values last
+  std::array<ReportClock, kMostPartialSensors> partial_clock = {};
   // What the last call has given
   std::vector<std::int64_t> plot_track_id;
   std::vector<Event> events;
@@ -84,8 +85,8 @@ struct Picture {
   int add_radar(const Radar& radar) {
     auto place = std::find_if(radars.begin(), radars.end(),
                               [](const RadarState& known) { return !known.in_use; });
-    require(place != radars.end() || radars.size() < kMostRadars, "radar",
-            "at most 16 radars", static_cast<int>(radars.size()) + 1);
+    require(place != radars.end() || radars.size() < kMostRadars, "radar", "at most 16 radars",
+            static_cast<int>(radars.size()) + 1);
     static_assert(kMostRadars == 16);
     RadarState of_radar(validated(radar), config);
     place = place == radars.end() ? radars.insert(place, std::move(of_radar))
@@ -134,6 +135,12 @@ struct Picture {
     if (started && time_s > scan_time_s + kOldestReport_s) return Status::kNotFinite;
     if (started && time_s < scan_time_s - kOldestReport_s) return Status::kNegativeTimeStep;
     return Status::kOk;
+  }
+
+  /// The time of a report of a source.
+  [[nodiscard]] double time_of(ReportClock& clock, double time_s) const noexcept {
+    constexpr double kPeriods = 1.5;
+    return started ? clock(time_s, scan_time_s, kPeriods * longest_period_s()) : time_s;
   }
 
   /// Nothing changes, for that reason.
@@ -306,6 +313,7 @@ struct Picture {
     radars = other.radars;
     at_hand = other.at_hand;
     partial_time_s = other.partial_time_s;
+    partial_clock = other.partial_clock;
     scan_time_s = other.scan_time_s;
     looked_since_s = other.looked_since_s;
     started = other.started;
@@ -330,6 +338,7 @@ struct Picture {
     if (!has_radar(at_hand)) fields.fail();
     if (!fields.ok()) return;
     fields(partial_time_s);
+    for (ReportClock& clock : partial_clock) clock.archive(fields);
     fields(scan_time_s);
     fields(started);
     fields(full);

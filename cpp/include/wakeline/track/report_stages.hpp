@@ -24,14 +24,18 @@ class ReportStages {
     evidence_.reserve(picture.estimators.size());
   }
 
-  ReportResult process(const PositionReport& report) noexcept {
+  ReportResult process(const PositionReport& given) noexcept {
     picture_.clear_results();
+    PositionReport report = given;
     if (!report.is_valid()) return {Status::kNotFinite, 0, {}};
     if (const Status status = picture_.status_of_time(report.time_s); status != Status::kOk)
       return {status, 0, {}};
     const int number = picture_.identities.find_or_add(report.source, report.identity);
     Identity& identity = picture_.identities[number];
+    ReportClock clock = identity.clock;
+    report.time_s = picture_.time_of(clock, report.time_s);
     if (!(report.time_s > identity.time_s)) return {Status::kNegativeTimeStep, 0, {}};
+    identity.clock = clock;
     if (!identity.reported())
       if (const int slot = picture_.slot_of_identity(number); slot >= 0)
         picture_.tracks.at(slot).identity = -1;

@@ -401,7 +401,8 @@ class ScanStages {
     const double silent_s = picture_.scan_time_s - track.looked_s;
     if (!(silent_s > kSilentPeriods * period_s) || picture_.is_awaited(track)) return;
     const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
-    const double misses = state().beam.resumes() ? 0.0 : periods;
+    const bool hidden = is_hidden(track);
+    const double misses = state().beam.resumes() || hidden ? 0.0 : periods;
     if (!(picture_.scan_time_s < track.seen_until_s))
       for (double k = 0.0; k < misses; ++k) track.count(false);
     track.looked_s += periods * period_s;
@@ -416,11 +417,26 @@ class ScanStages {
     PredictionStep<Estimator> step{&picture_.estimator_at(track.slot),
                                    picture_.scan_time_s - track.time_s};
     picture_.steps.predict({&step, 1});
-    if (misses > 0.0) touched_.push_back(track.slot);
+    if (misses > 0.0 || hidden) touched_.push_back(track.slot);
     track.nis = std::numeric_limits<double>::quiet_NaN();
     if (step.status != Status::kOk) return;
     track.time_s = picture_.scan_time_s;
     track.kinematics = step.kinematics;
+  }
+
+  /// Whether radars turn, and a track is where none of them sees.
+  [[nodiscard]] bool is_hidden(const Track& track) const noexcept {
+    const Vec<double, 2> position =
+        track.position() + (picture_.scan_time_s - track.time_s) * track.velocity();
+    bool turns = false;
+    for (const RadarState& radar : picture_.radars) {
+      const double silent_s = picture_.scan_time_s - radar.time_s;
+      if (!radar.in_use || !radar.started || silent_s > kSilentPeriods * radar.radar.period_s)
+        continue;
+      if (radar.covers(position)) return false;
+      turns = true;
+    }
+    return turns;
   }
 
   /// Has the plots of the last turn wait that may be of a track which waits, or ahead of the beam,
@@ -632,8 +648,10 @@ class ScanStages {
     const ConvertedErrors& of_plot = state().plots[best.plot].errors;
     const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
     const Mat<double, 2, 2> position_m2 = position_in(track.kinematics).covariance;
-    track.stays_m2 = errors.share() * (best.nominal_r + position_m2) +
-                     bent_m2(track.position() - antenna_m, position_m2);
+    // Where errors are said to be correlated, plots have counted for less already.
+    const double share = state().radar.correlation_time_s > 0.0 ? 0.0 : errors.share();
+    track.stays_m2 =
+        share * (best.nominal_r + position_m2) + bent_m2(track.position() - antenna_m, position_m2);
   }
 
   void confirm_and_delete() noexcept {

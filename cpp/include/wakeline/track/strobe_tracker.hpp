@@ -274,8 +274,12 @@ class StrobeTracker {
         recent_.from(track.from_rad), RadiusGate{strobe.radius_m}, centre, echo_, rivals_);
     const double passed_rad =
         echo ? Beam::unwrapped(echo.bearing_rad, track.pass_rad) : track.pass_rad;
-    const double time_s = std::max(recent_.time_s(passed_rad), track.time_s);
-    LossReason reason = take(track, time_s, echo, own) ? LossReason::kNone : LossReason::kFailed;
+    const SweepPlace passed = recent_.at(passed_rad);
+    const double time_s = std::max(passed.time_s, track.time_s);
+    OwnShip then = own;
+    then.north_m = passed.own_north_m;
+    then.east_m = passed.own_east_m;
+    LossReason reason = take(track, time_s, echo, then) ? LossReason::kNone : LossReason::kFailed;
     count(track, bool(echo));
     if (reason == LossReason::kNone) reason = reason_to_end(track);
     if (reason == LossReason::kNone &&
@@ -289,8 +293,8 @@ class StrobeTracker {
     return reason == LossReason::kNone;
   }
 
-  /// Brings the estimate to the time of the strobe and updates it by the echo. An estimator that
-  /// finds the echo impossible starts anew from it. False when it fails.
+  /// Brings the estimate to the time of the strobe and updates it by the echo, seen from `own`. An
+  /// estimator that finds the echo impossible starts anew from it. False when it fails.
   bool take(StrobeTrack& track, double time_s, const StrobeEcho& echo,
             const OwnShip& own) noexcept {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -482,7 +486,7 @@ StrobeReport StrobeTracker<Estimator, Amplitude>::process(const Sweep<Amplitude>
   if (rejected(status)) return {status, {}, {}};
   time_s_ = sweep.time_s;
   width_rad_ = sweep.azimuth_width_rad;
-  land_.blank(sweep, recent_.add(sweep, beam_rad_));
+  land_.blank(sweep, recent_.add(sweep, beam_rad_, own.position<double>()));
 
   due_.clear();
   if (first || beam_rad_ >= next_due_rad_) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "wakeline/core/archive.hpp"
+#include "wakeline/core/types.hpp"
 #include "wakeline/video/sweep.hpp"
 
 namespace wakeline {
@@ -20,6 +21,8 @@ namespace wakeline {
 struct SweepPlace {
   double beam_rad;
   double time_s;
+  double own_north_m;  ///< own ship
+  double own_east_m;
 };
 
 /// The last of some sweeps as a `PolarPicture`, at the azimuths that they were received at. Does
@@ -78,11 +81,12 @@ class RecentSweeps {
 
   /// Adds a sweep in place of the oldest one and returns the copy of its amplitudes, to be changed
   /// by the caller. One of another start range or cell length replaces all.
-  std::span<Amplitude> add(const Sweep<Amplitude>& sweep, double beam_rad) noexcept {
+  std::span<Amplitude> add(const Sweep<Amplitude>& sweep, double beam_rad,
+                           const Vec<double, 2>& own_m) noexcept {
     if (!continues(sweep)) size_ = cells_ = 0;
     newest_ = (newest_ + 1) % places_.size();
     size_ = std::min(size_ + 1, places_.size());
-    places_[newest_] = {beam_rad, sweep.time_s};
+    places_[newest_] = {beam_rad, sweep.time_s, own_m[0], own_m[1]};
     width_rad_ = sweep.azimuth_width_rad;
     start_range_m_ = sweep.start_range_m;
     cell_m_ = sweep.cell_m;
@@ -109,15 +113,19 @@ class RecentSweeps {
             .cell_m = cell_m_};
   }
 
-  /// When the beam had an angle: between two sweeps interpolated; there must be one.
-  [[nodiscard]] double time_s(double beam_rad) const noexcept {
+  /// When the beam had an angle, and where own ship was: between two sweeps interpolated; there
+  /// must be one.
+  [[nodiscard]] SweepPlace at(double beam_rad) const noexcept {
     std::size_t k = 0;
     while (k + 1 < size_ && back(k).beam_rad > beam_rad) ++k;
     const SweepPlace& before = back(k);
-    if (k == 0 || before.beam_rad > beam_rad) return before.time_s;
+    if (k == 0 || before.beam_rad > beam_rad) return before;
     const SweepPlace& after = back(k - 1);
     const double share = (beam_rad - before.beam_rad) / (after.beam_rad - before.beam_rad);
-    return before.time_s + share * (after.time_s - before.time_s);
+    const auto between = [share](double a, double b) { return a + share * (b - a); };
+    return {beam_rad, between(before.time_s, after.time_s),
+            between(before.own_north_m, after.own_north_m),
+            between(before.own_east_m, after.own_east_m)};
   }
 
   /// Saves or restores the sweeps.
