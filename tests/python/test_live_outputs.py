@@ -294,3 +294,29 @@ def test_category_048_by_two_groups_counts_once():
         one.mean for one in once.tracker.tracks()
     ]
     assert both.status()["inputs"]["b"]["duplicates"] > 900
+
+
+@pytest.mark.parametrize("silence_s", [8.0, 14.0, 20.0])
+def test_no_target_ends_because_a_radar_is_silent(silence_s):
+    """Vessels that are still there when it turns again; one that is not is lost then."""
+    session = wl.live.Session(
+        {"session": {"origin_deg": [54.0, 10.0]}, "own": {"place_deg": [54.0, 10.0]}}
+    )
+    ended, back_s = [], 100.0 + silence_s
+    output = session.add_output("udp://127.0.0.1:1?format=ttm")
+    output.send = lambda octets: ended.append(session.time_s) if b",L," in octets else None
+    shown = set()
+    for k in range(800):
+        t = 0.25 * k
+        session.feed(t, "clock", b"")
+        if k % 10 or 100.0 <= t < back_s:
+            shown |= {len(session.shown)} if 60.0 < t < back_s + 8.0 else set()
+            continue
+        for bearing_rad in (0.5, 2.0, 4.0) if t < back_s else (0.5, 2.0):
+            plot = {"time_s": t, "range_m": 1500.0, "bearing_rad": bearing_rad}
+            session.feed(t, "radar", json.dumps({"radar": "A", **plot}).encode())
+        mark = {"sector": {"from_rad": 0.0, "to_rad": math.tau, "time_s": t}}
+        session.feed(t, "radar", json.dumps({"radar": "A", **mark}).encode())
+    assert shown == {3}
+    assert len(ended) == 1
+    assert ended[0] > back_s + 5.0

@@ -323,8 +323,11 @@ class LiveConfig:
         check_once("radars", [radar.name for radar in self.radars])
         check_once("sac_sic of radars", [one.sac_sic for one in self.radars if one.sac_sic])
         for one in self.inputs:
-            if one.radar:
-                _check_choice("radar", one.radar, [radar.name for radar in self.radars])
+            names = [radar.name for radar in self.radars]
+            if one.radar and one.radar not in names:
+                known, got = ", ".join(names), quoted(one.radar)
+                needed = "each other one needs a section [[radar]] with its name"
+                raise SettingsError(f"radar must be one of {known}, got {got}; {needed}")
         for one in self.guard_zones:
             try:
                 Zone.of(placed(one, lambda latitude, longitude: (latitude * 1e3, longitude * 1e3)))

@@ -118,6 +118,7 @@ class TrackEngine:
         self._heard: set[int] = set()  # radars that have given a sector
         self._correct_s = self._heard_s = -math.inf
         self._late_s = 0.0
+        self._late_reports = 0
         self._reported = False
         self._known = np.zeros(0, dtype=np.int64), np.zeros((0, 4))
         self._watched: deque[tuple[np.ndarray, np.ndarray]] = deque()
@@ -130,12 +131,16 @@ class TrackEngine:
 
     @property
     def late(self) -> dict[str, float]:
-        """The window of late data, s, how many came late and too late, and corrections."""
+        """The window of late data, s, how many came late and too late, and corrections.
+
+        Of those too late some are reports, such as of AIS, which are used as of now.
+        """
         window = self._tracker
         return {
             "window_s": window.window_s,
             "late_inputs": window.late_inputs,
             "too_late_inputs": window.too_late_inputs,
+            "too_late_reports": self._late_reports,
             "corrections": window.corrections,
         }
 
@@ -220,6 +225,12 @@ class TrackEngine:
         """The same as columns."""
         return self._tracker.tracks(time_s=time_s, correct=False)
 
+    def held(self) -> set[int]:
+        """The tracks that are only held, as they have had no echo for long."""
+        table = self._tracker.tracks(tentative=True, correct=False)
+        names = zip(table.track_id.tolist(), table.status, strict=True)
+        return {track_id for track_id, status in names if status == "held"}
+
     def updated(self) -> tuple[wl.track.TrackTable, np.ndarray, list[int]]:
         """The shown tracks, each as of its last update, and what the last call had not.
 
@@ -299,7 +310,9 @@ class TrackEngine:
         if not math.isfinite(report["vnorth_mps"] + report["veast_mps"]):
             report |= {"vnorth_mps": None, "veast_mps": None}
         self._reported = True
+        before = self._tracker.too_late_inputs
         result = self._tracker.report(**report)
+        self._late_reports += self._tracker.too_late_inputs - before
         return _events(result.events), result.track_id if result.status == wl.Status.gated else 0
 
 

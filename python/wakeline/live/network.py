@@ -183,6 +183,8 @@ class NetworkInput(_Thread):
         super().__init__(config)
         self._take = take
         self._capture = datagrams_of(self._path()) if config.scheme == "pcap" else None
+        if config.scheme == "file" and not Path(self._path()).exists():
+            raise FileNotFoundError(errno.ENOENT, "No such file or directory", self._path())
         if self._datagrams is not None:
             self.port = self._datagrams.getsockname()[1]
 

@@ -175,6 +175,7 @@ class Session:
         self._disagree: dict[tuple[int, str], float] = {}
         self._edge_rad: dict[str, float] = {}
         self.acquired: dict[int, int] = {}
+        self._held: set[int] = set()  # shown, though no radar has looked for long
         if self.config.session.origin_deg:
             self._set_origin(*self.config.session.origin_deg)
         for one in self.config.radars:
@@ -576,6 +577,7 @@ class Session:
         self._published_s = self.time_s
         radar, self._unpublished = self._unpublished, ""
         table, rows, gone = self.tracker.updated()
+        gone = self._gone_now(table, gone)
         self.shown.take(table, rows, self.is_acquiring(table))
         self.shown.drop(gone)
         self._remember(table, rows)
@@ -590,6 +592,15 @@ class Session:
             self._history.pop(track_id, None)
             self.acquired.pop(track_id, None)
         self._watch(self.tracker.time_s)
+
+    def _gone_now(self, table: wl.track.TrackTable, gone: Sequence[int]) -> list[int]:
+        """The tracks that are gone; not yet those that are held because radars are silent."""
+        self._held = (self._held | set(gone)) - set(table.track_id.tolist())
+        kept = set()
+        if self._held and self.watchers[0].is_blind(self, self.tracker.time_s):
+            kept = self._held & self.tracker.held()
+        gone, self._held = sorted(self._held - kept), kept
+        return gone
 
     def _watch(self, time_s: float) -> None:
         """Look for alarms, if the last look is long enough ago."""

@@ -120,7 +120,7 @@ class AlarmWatcher(AlarmBoard):
             ),
             own=[own.north_m, own.vnorth_mps, own.east_m, own.veast_mps] if known else None,
             is_ashore=session.is_ashore,
-            is_blind=self._is_blind(session, time_s),
+            is_blind=self.is_blind(session, time_s),
             heading_rad=own.heading_rad if hasattr(own, "heading_rad") else float("nan"),
             events=[SimpleNamespace(**one) for one in session.news],
             sensors=_sensors(session, time_s),
@@ -128,7 +128,7 @@ class AlarmWatcher(AlarmBoard):
         )
         return [event_of(one) for one in events]
 
-    def _is_blind(self, session: Any, time_s: float) -> bool:
+    def is_blind(self, session: Any, time_s: float) -> bool:
         """Whether radars are silent or not used: all, one since a short time, or a moment ago."""
         heard = [feed for feed in session.feeds.values() if feed.used_s > -math.inf]
         silent_turns = [(time_s - feed.used_s) / feed.period_s for feed in heard]

@@ -78,7 +78,8 @@ inline std::uint64_t six_bit_text(std::string_view text) noexcept {
 }
 
 /// Category 062: I062/010, 015, 070, 105, 100, 185, 245 (of a named track), 040, 080, 290 (age of
-/// the last plot, if known), 200 and 500 (if the covariance is known). Cartesian positions and
+/// the last plot, if known), 200 and 500 (if the covariance is known); of one that is being
+/// acquired neither 185 nor 500. Cartesian positions and
 /// velocities are in the plane of the feed, x east.
 struct Cat062 {
   static constexpr unsigned kCategory = cat062::kCategory;
@@ -89,11 +90,12 @@ struct Cat062 {
     const ReportedTrack& track = record.track;
     const auto& mean = track.kinematics.mean;
     const bool named = !track.label().empty(), aged = std::isfinite(track.age_s);
+    const bool moves = !track.acquiring, rated = moves && track.has_covariance;
     const auto bit = [](Item item, bool present = true) { return std::uint64_t{present} << item; };
     block.specify(bit(kSource) | bit(kService) | bit(kTimeOfDay) | bit(kWgs84) | bit(kCartesian) |
-                  bit(kVelocity) | bit(kIdentification, named) | bit(kTrackNumber) |
+                  bit(kVelocity, moves) | bit(kIdentification, named) | bit(kTrackNumber) |
                   bit(kTrackStatus) | bit(kUpdateAges, aged) | bit(kModeOfMovement) |
-                  bit(kAccuracies, track.has_covariance));
+                  bit(kAccuracies, rated));
     block.put(1, record.config.source.area);
     block.put(1, record.config.source.system);
     block.put(1, record.config.service);
@@ -101,8 +103,10 @@ struct Cat062 {
     put_place(block, record.place(), 25);
     block.put(3, signed_steps(mean[2], 0.5, 24));
     block.put(3, signed_steps(mean[0], 0.5, 24));
-    block.put(2, signed_steps(mean[3], 0.25, 16));
-    block.put(2, signed_steps(mean[1], 0.25, 16));
+    if (moves) {
+      block.put(2, signed_steps(mean[3], 0.25, 16));
+      block.put(2, signed_steps(mean[1], 0.25, 16));
+    }
     if (named) {
       block.put(1, 0x40);  // STI: not downlinked from the target
       block.put(6, six_bit_text(track.label()));
@@ -114,7 +118,7 @@ struct Cat062 {
       block.put(1, unsigned_steps(track.age_s, 0.25, 8));
     }
     block.put(1, movement(track.turn_rate_rad_s));
-    if (track.has_covariance) put_accuracies(block, record);
+    if (rated) put_accuracies(block, record);
   }
 
  private:
@@ -165,8 +169,8 @@ struct Cat010 {
     const bool fits = std::max(std::abs(mean[0]), std::abs(mean[2])) < 32767.0;
     const auto bit = [](Item item, bool present = true) { return std::uint64_t{present} << item; };
     block.specify(bit(kSource) | bit(kMessageType) | bit(kDescriptor) | bit(kTimeOfDay) |
-                  bit(kWgs84) | bit(kCartesian, fits) | bit(kVelocityPolar) | bit(kTrackNumber) |
-                  bit(kTrackStatus) | bit(kDeviation, track.has_covariance));
+                  bit(kWgs84) | bit(kCartesian, fits) | bit(kVelocityPolar, !track.acquiring) |
+                  bit(kTrackNumber) | bit(kTrackStatus) | bit(kDeviation, track.has_covariance));
     block.put(1, record.config.source.area);
     block.put(1, record.config.source.system);
     block.put(1, 1);     // target report
@@ -178,8 +182,11 @@ struct Cat010 {
       block.put(2, signed_steps(mean[2], 1.0, 16));
       block.put(2, signed_steps(mean[0], 1.0, 16));
     }
-    block.put(2, unsigned_steps(track.velocity().norm(), kSpeedUnit, 16));
-    block.put(2, azimuth_steps(record.plane.true_course_rad(std::atan2(mean[3], mean[1]), place)));
+    if (!track.acquiring) {
+      const double course_rad = std::atan2(mean[3], mean[1]);
+      block.put(2, unsigned_steps(track.velocity().norm(), kSpeedUnit, 16));
+      block.put(2, azimuth_steps(record.plane.true_course_rad(course_rad, place)));
+    }
     block.put(2, record.turn.number);
     const bool turning = std::abs(track.turn_rate_rad_s) > kTurning_rad_s;
     block.put(1, (track.acquiring ? 0x80 : 0) | (record.turn.last ? 0x40 : 0) |

@@ -488,7 +488,7 @@ export class Overlay {
     if (target.mode?.startsWith("turning")) lines.push(target.mode);
     if (target.danger && target.danger.tcpa_s >= 0) {
       lines.push(`CPA ${distance(target.danger.cpa_m, settings.units)} · ${percent(target.danger.probability)}`);
-    } else if (target.selected) {
+    } else if (target.selected && !acquiring(target)) {
       lines.push(`${speed(Math.hypot(target.vnorth, target.veast), settings.units)} · ${angle(Math.atan2(target.veast, target.vnorth))}`);
     }
     return lines;

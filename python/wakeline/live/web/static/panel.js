@@ -218,10 +218,12 @@ export class Panel {
       const bad = problems ? `, ${problems} unreadable` : "";
       rows.push([name, `${Number.isFinite(age) ? `${age} s old` : "nothing received"}${lost}${bad}`, Number.isFinite(age) && age < 15 ? "good" : "bad"]);
     }
-    const late = status.late?.too_late_inputs ?? 0;
+    const reports = status.late?.too_late_reports ?? 0;
+    const late = (status.late?.too_late_inputs ?? 0) - reports;
     if (late > this.late.count) this.late.until_s = store.time_s + LATE_S;
     this.late.count = late;
     if (late) rows.push(["Late data", `${late} sectors, more than ${status.late.window_s} s`, store.time_s < this.late.until_s ? "bad" : ""]);
+    if (reports) rows.push(["Late AIS", `${reports} positions, more than ${status.late.window_s} s`, ""]);
     for (const [name, one] of Object.entries(status.own ?? {})) {
       if (one?.source || one?.sources?.length || one?.rejected?.length) rows.push([name.replaceAll("_", " "), `${one.source ?? one.why}${one.age_s === null || one.age_s === undefined ? "" : `, ${Math.round(one.age_s)} s old`}`, one.source && one.fresh !== false ? "good" : "bad"]);
     }
