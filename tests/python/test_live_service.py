@@ -743,6 +743,29 @@ def test_a_session_begins_on_a_full_disk_and_is_recorded_when_there_is_room(tmp_
     assert {one.track_id: one.mean for one in replayed(path)[0].tracker.tracks()} == whole
 
 
+def test_what_waits_while_a_record_is_read_again_is_not_taken_for_new(tmp_path):
+    path = tmp_path / "s.pcap"
+    config = LiveConfig(radars=(ASHORE,), inputs=(InputConfig("udp://127.0.0.1:0?name=x"),))
+    service = Service(wl.live.Session(config), path)
+    service._begin()
+    service._feed("x", [turn(0, time.time())])
+    service.close()
+    again = Service(wl.live.Session(config), path)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for k in range(50):
+            sender.sendto(turn(k, time.time())[1], ("127.0.0.1", again.inputs[0].port))
+        again._begin()
+        sender.sendto(turn(50, time.time())[1], ("127.0.0.1", again.inputs[0].port))
+        end_s = time.monotonic() + 3.0
+        while again._waiting.empty() and time.monotonic() < end_s:
+            time.sleep(0.01)
+    taken = []
+    while not again._waiting.empty():
+        taken += again._waiting.get()[1]
+    again.close()
+    assert len(taken) == 1
+
+
 def test_a_session_of_other_settings_or_inputs_is_not_continued(tmp_path):
     path = tmp_path / "s.pcap"
     config = LiveConfig(radars=(ASHORE,), session=SessionConfig(segment_mb=0.01))

@@ -42,6 +42,7 @@ _BACK_OFF_S = (0.25, 10.0)  # first and longest
 _MOST_CLIENTS = 32
 _MOST_QUEUED = 1 << 20  # octets that wait for a receiver
 _MOST_FOR_FILE = 64 << 20
+_MOST_DISCARDED = 1_000_000
 _LONGEST_WAIT_S = 5.0  # of a message for a receiver that is not a file
 _MOST_UNSENT = 1024  # octets in a socket that the network does not take
 PROBES = {"TCP_KEEPIDLE": 30, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 3}  # s, s, times
@@ -224,6 +225,15 @@ class NetworkInput(_Thread):
             member = struct.pack("4s4s", socket.inet_aton(host), socket.inet_aton(interface))
             one.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
         return one
+
+    def discard(self) -> None:
+        """Drop the datagrams that have waited, of which nobody knows since when."""
+        if self._datagrams is None:
+            return
+        self._datagrams.setblocking(False)
+        with contextlib.suppress(BlockingIOError):
+            for _ in range(_MOST_DISCARDED):
+                self._datagrams.recv(_PIECE)
 
     def _udp(self) -> bool:
         one = self._datagrams

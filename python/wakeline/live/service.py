@@ -176,6 +176,8 @@ class Service:
                         return
                     self._continue(path, record)
                 self.session.note, board.log = "", log
+                for one in self.inputs:
+                    one.discard()
             time_s = max(at_microsecond(now_s()), self.session.time_s)
             try:
                 self._recorder = self._begun_recorder(time_s)
