@@ -43,6 +43,7 @@ def _noise_of_pieces(pieces: np.ndarray) -> Noise | None:
         return None
     mean = pieces.mean(axis=1)
     away = pieces - mean[:, np.newaxis]
-    std = float(np.sqrt(np.mean(away**2)))
-    skewness = float(np.mean(away**3)) / std**3 if std > 0 else 0.0
+    square = away * away
+    std = float(np.sqrt(np.mean(square)))
+    skewness = float(np.mean(square * away)) / std**3 if std > 0 else 0.0
     return Noise(std, skewness, float(mean.mean())) if std > 0 else None
