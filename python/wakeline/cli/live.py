@@ -33,7 +33,7 @@ from wakeline.live.session import Session
 from wakeline.tracking.settings import Settings, SettingsError, read_settings, read_toml
 
 from . import view
-from .options import place
+from .options import above_zero, place, seconds_above_zero
 
 _ABOUT = """\
 Tracks the vessels that radars on the network see, and sends the tracks.
@@ -104,7 +104,11 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         help="place of a station that does not move, in degrees; default: own ship's instruments",
     )
     parser.add_argument(
-        "--for", dest="for_s", type=_seconds, metavar="S", help="end after so many seconds"
+        "--for",
+        dest="for_s",
+        type=seconds_above_zero,
+        metavar="S",
+        help="end after so many seconds",
     )
     parser.add_argument("--quiet", action="store_true", help="print no status lines")
     parser.add_argument(
@@ -329,15 +333,5 @@ def status_line(status: dict[str, Any]) -> str:
     return " | ".join(parts)
 
 
-def _seconds(text: str) -> float:
-    seconds = float(text)
-    if not 0.0 < seconds <= threading.TIMEOUT_MAX:
-        raise argparse.ArgumentTypeError(f"wanted a number above 0, got {text!r}")
-    return seconds
-
-
 def _speed(text: str) -> float:
-    speed = math.inf if text == "max" else float(text)
-    if not speed > 0.0:
-        raise argparse.ArgumentTypeError(f"wanted a number above 0 or max, got {text!r}")
-    return speed
+    return math.inf if text == "max" else above_zero(text, "max, or a number", math.inf)

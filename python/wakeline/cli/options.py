@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +15,25 @@ from wakeline.recording.table import ColumnNames
 from wakeline.tracking import Settings, open_recording
 
 
-def metres_above_zero(text: str) -> float:
+def above_zero(text: str, wanted: str = "a number", most: float = sys.float_info.max) -> float:
     """The value of an option."""
     try:
-        metres = float(text)
+        value = float(text)
     except ValueError:
-        metres = math.nan
-    if not 0.0 < metres < math.inf:
-        raise argparse.ArgumentTypeError(f"wanted metres above 0, got {text!r}")
-    return metres
+        value = math.nan
+    if not 0.0 < value <= most:
+        raise argparse.ArgumentTypeError(f"wanted {wanted} above 0, got {text!r}")
+    return value
+
+
+def metres_above_zero(text: str) -> float:
+    """The value of an option in metres."""
+    return above_zero(text, "metres")
+
+
+def seconds_above_zero(text: str) -> float:
+    """The value of an option in seconds, for which a program can wait."""
+    return above_zero(text, "seconds", threading.TIMEOUT_MAX)
 
 
 def add_recording(parser: argparse.ArgumentParser) -> None:

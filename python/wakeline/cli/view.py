@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 from wakeline.recording import RecordingError, read_own_ship, read_tracks
 from wakeline.tracking import read_settings
 
+from .options import seconds_above_zero
+
 if TYPE_CHECKING:
     from wakeline.live.alarms import AlarmLog
     from wakeline.live.playback import Player
@@ -50,7 +52,11 @@ def add_screen_options(
     parser.add_argument("--speed", type=float, default=1.0, metavar="X", help="default 1")
     parser.add_argument("--no-browser", action="store_true", help="open no browser")
     parser.add_argument(
-        "--for", dest="for_s", type=float, metavar="S", help="end after so many seconds"
+        "--for",
+        dest="for_s",
+        type=seconds_above_zero,
+        metavar="S",
+        help="end after so many seconds",
     )
 
 

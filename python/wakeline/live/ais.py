@@ -300,8 +300,8 @@ def _take_position(vessel: AisVessel, received_s: float, stated_s: float, messag
     speed_kn = getattr(message, "speed", None)
     course_deg = getattr(message, "course", None)
     heading_deg = getattr(message, "heading", None)
-    slow = speed_kn is not None and 0.0 <= speed_kn < 102.25
-    speed_mps = float(speed_kn) * KNOT_MPS if slow else math.nan
+    has_speed = speed_kn is not None and 0.0 <= speed_kn < 102.25
+    speed_mps = float(speed_kn) * KNOT_MPS if has_speed else math.nan
     good = course_deg is not None and 0.0 <= course_deg < 360.0
     course_rad = math.radians(course_deg) if good else math.nan
 
@@ -314,7 +314,7 @@ def _take_position(vessel: AisVessel, received_s: float, stated_s: float, messag
     is_known = vessel.stated_well >= _OFTEN
     vessel.time_s = stated_s if is_known else received_s
     is_doubtful = not is_known and vessel.messages < _NEW and math.isfinite(stated_s)
-    vessel.late_m = speed_mps * (received_s - stated_s) if is_doubtful and slow else 0.0
+    vessel.late_m = speed_mps * (received_s - stated_s) if is_doubtful and has_speed else 0.0
     vessel.received_s, vessel.stated_s = received_s, stated_s
     vessel.latitude_deg, vessel.longitude_deg = latitude, longitude
     vessel.speed_mps, vessel.course_rad = speed_mps, course_rad

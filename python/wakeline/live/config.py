@@ -320,10 +320,10 @@ class LiveConfig:
             check_once(name, [each.name for each in named])
             object.__setattr__(self, name, named)
         object.__setattr__(self, "radars", tuple(self.radars) or (RadarConfig(),))
-        check_once("radars", [radar.name for radar in self.radars])
+        names = [radar.name for radar in self.radars]
+        check_once("radars", names)
         check_once("sac_sic of radars", [one.sac_sic for one in self.radars if one.sac_sic])
         for one in self.inputs:
-            names = [radar.name for radar in self.radars]
             if one.radar and one.radar not in names:
                 known, got = ", ".join(names), quoted(one.radar)
                 needed = "each other one needs a section [[radar]] with its name"

@@ -131,29 +131,24 @@ class Session:
         self.lost = 0
         self.note = ""
         self.record_problem = ""
-        bow = {one.name for one in self.config.radars if one.azimuth == "bow"}
-        if self.config.radars[0].name in bow:
-            bow.add("")  # inputs that name no radar have the first
-        sac_sic = {one.name: one.sac_sic for one in self.config.radars if one.sac_sic}
-        if self.config.radars[0].sac_sic:
-            sac_sic[""] = self.config.radars[0].sac_sic
+        self.radars = {one.name: one for one in self.config.radars}
         engine_radars = [one.make_radar(self.config.settings) for one in self.config.radars]
-        names = [one.name for one in self.config.radars]
-        least_m = {n: one.min_range_m for n, one in zip(names, engine_radars, strict=True)}
-        least_m[""] = least_m[names[0]]
-        self._shared = Receivers(from_bow=frozenset(bow), sac_sic=sac_sic, min_range_m=least_m)
+        pairs = list(zip(self.config.radars, engine_radars, strict=True))
+        named = {one.name: (one, radar) for one, radar in pairs}
+        named[""] = pairs[0]  # inputs that name no radar have the first
+        self._shared = Receivers(
+            from_bow=frozenset(n for n, (one, _) in named.items() if one.azimuth == "bow"),
+            sac_sic={n: one.sac_sic for n, (one, _) in named.items() if one.sac_sic},
+            min_range_m={n: radar.min_range_m for n, (_, radar) in named.items()},
+        )
         self.inputs = {one.name: Source(one, self._shared) for one in self.config.inputs}
         self.outputs: dict[str, Output] = {}
         for one in self.config.outputs:
             self.add_output(one)
-        self.radars = {one.name: one for one in self.config.radars}
         self.tracker = TrackEngine(
             engine_radars, self.config.settings, self.config.session.window_s
         )
-        self.feeds = {
-            one.name: RadarFeed(one.name, radar.period_s)
-            for one, radar in zip(self.config.radars, engine_radars, strict=True)
-        }
+        self.feeds = {one.name: RadarFeed(one.name, radar.period_s) for one, radar in pairs}
         self.own = OwnShipSources(self.config.own)
         self.ais = AisPicture()
         self.plane: wl.LocalPlane | None = None
@@ -993,9 +988,14 @@ class Session:
         source = self.own.position.fresh(self.time_s)
         place_m = (pose.north_m, pose.east_m) if source is None else source.value[-1]
         known = math.isfinite(pose.vnorth_mps)
-        velocity = (pose.vnorth_mps, pose.veast_mps) if known else (0.0, 0.0)
-        columns = ("north_m", "east_m", "vnorth_mps", "veast_mps")
-        return OwnShip(**dict(zip(columns, (*place_m[:2], *velocity), strict=True))), known
+        velocity_mps = (pose.vnorth_mps, pose.veast_mps) if known else (0.0, 0.0)
+        own = OwnShip(
+            north_m=place_m[0],
+            east_m=place_m[1],
+            vnorth_mps=velocity_mps[0],
+            veast_mps=velocity_mps[1],
+        )
+        return own, known
 
     @property
     def origin_deg(self) -> tuple[float, float] | None:

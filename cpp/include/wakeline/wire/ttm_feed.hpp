@@ -68,8 +68,7 @@ class TtmFeed {
     bool osd_sent = false;
     schedule_.update(time_s, tracks, [&](const ReportedTrack& track, const ReportTurn& turn) {
       NmeaSentence sentence;
-      NmeaTarget target = describe(time_s, own, place, track, turn);
-      if (!own_velocity_known) target.cpa_m = target.tcpa_s = NmeaTarget::kNone;
+      const NmeaTarget target = describe(time_s, own, place, own_velocity_known, track, turn);
       const std::string_view text = config_.tll ? write_tll(sentence, config_.talker, target)
                                                 : write_ttm(sentence, config_.talker, target);
       if (text.empty()) return;
@@ -86,7 +85,7 @@ class TtmFeed {
 
  private:
   [[nodiscard]] NmeaTarget describe(double time_s, const OwnShip& own, const GeoPoint& own_place,
-                                    const ReportedTrack& track,
+                                    bool own_velocity_known, const ReportedTrack& track,
                                     const ReportTurn& turn) const noexcept {
     const Vec<double, 2> velocity = track.velocity();
     const Vec<double, 2> position = track.position() + (time_s - track.time_s) * velocity;
@@ -100,8 +99,9 @@ class TtmFeed {
       target.speed_mps = velocity.norm();
       target.course_rad =
           plane_.true_course_rad(std::atan2(velocity[1], velocity[0]), target.place);
-      std::tie(target.cpa_m, target.tcpa_s) =
-          straight_approach(position - own.position<double>(), velocity - own.velocity<double>());
+      if (own_velocity_known)
+        std::tie(target.cpa_m, target.tcpa_s) =
+            straight_approach(position - own.position<double>(), velocity - own.velocity<double>());
     }
     target.acquiring = track.acquiring;
     target.manual = track.manual;
