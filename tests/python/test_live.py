@@ -206,7 +206,7 @@ def test_what_a_held_up_connection_delivers_at_once_is_put_in_its_place():
 
 
 def two_radars():
-    return [JOYRIDE | {"name": name, "position_deg": [54.0, 10.0]} for name in "AB"]
+    return [JOYRIDE | {"name": n, "position_deg": [54.0, 10.0], "period_s": 2.0} for n in "AB"]
 
 
 def turn_of(radar, t):
@@ -341,6 +341,45 @@ def test_a_radar_ashore_needs_no_own_ship():
     (track,) = session.picture()["tracks"]
     assert track["speed_mps"] == pytest.approx(5.0, abs=1.0)
     assert track["latitude_deg"] > 54.0
+
+
+def turning_antenna(session, begin_s, end_s, turn_s, *, marks, sectors=16):
+    """Five vessels at rest and false plots as an antenna ashore sees them, sector by sector."""
+    rng = np.random.default_rng(5)
+    width_rad = math.tau / sectors
+    for k in range(int((end_s - begin_s) / turn_s * sectors)):
+        from_rad, to_rad = k % sectors * width_rad, (k % sectors + 1) * width_rad
+        plots = [(b, 2000.0 + 500.0 * b) for b in (0.3, 1.1, 2.9, 4.0, 5.5)]
+        if rng.random() < 0.3:
+            plots.append((rng.uniform(from_rad, to_rad), rng.uniform(500.0, 8000.0)))
+        for b, range_m in sorted(plots):
+            if from_rad <= b < to_rad:
+                t = begin_s + (k // sectors + b / math.tau) * turn_s
+                r = range_m + 5.0 * rng.normal()
+                plot = {"time_s": t, "range_m": r, "bearing_rad": b}
+                session.feed(t, "x", json.dumps(plot).encode())
+        t = begin_s + (k + 1) / sectors * turn_s
+        mark = {"sector": {"from_rad": from_rad, "to_rad": to_rad, "time_s": t}}
+        session.feed(t, "x", json.dumps(mark).encode() if marks else b"")
+
+
+@pytest.mark.parametrize("marks", [True, False])
+@pytest.mark.parametrize("turn_s", [1.25, 5.0, 12.0, 18.0])
+def test_the_period_of_the_antenna_is_found(turn_s, marks):
+    session = wl.live.Session({"radar": [{"name": "A", "position_deg": [54.0, 10.0]}]})
+    turning_antenna(session, 0.0, 12.0 * turn_s + 60.0, turn_s, marks=marks)
+    assert session.status()["radars"]["A"]["period_s"] == pytest.approx(turn_s, rel=0.05)
+    ids = {track["track_id"] for track in session.picture()["tracks"]}
+    assert len(ids) == 5
+    other_s = 2.4 * turn_s if turn_s < 8.0 else turn_s / 2.4
+    begin_s = session.time_s
+    turning_antenna(session, begin_s, begin_s + 12.0 * other_s + 90.0, other_s, marks=marks)
+    assert session.status()["radars"]["A"]["period_s"] == pytest.approx(other_s, rel=0.05)
+    assert {track["track_id"] for track in session.picture()["tracks"]} == ids
+
+    again = wl.live.Session({"radar": [{"name": "A", "position_deg": [54.0, 10.0]}]})
+    again.restore(session.save())
+    assert again.status()["radars"]["A"]["period_s"] == session.status()["radars"]["A"]["period_s"]
 
 
 def test_plots_in_an_exclusion_zone_start_no_track():

@@ -214,6 +214,11 @@ class TrackEngine:
         )
         return _events(report.events)
 
+    def set_period(self, radar: int, period_s: float, time_s: float | None = None) -> None:
+        """Change the period of an antenna, at a time or now; all tracks are kept."""
+        self.radars[radar] = wl.Radar(**self.radars[radar].as_dict() | {"period_s": period_s})
+        self._tracker.set_radar(radar, self.radars[radar], time_s=time_s)
+
     def tracks(self, time_s: float | None = None) -> list[LiveTrack]:
         """All shown tracks, at a time or at that of the last sector."""
         return list(_rows(self.table(time_s)))

@@ -22,6 +22,7 @@ _GAUGES = {
     "octets_per_s": "Octets a second, over 5 s.",
     "age_s": "Age of the last message or sector.",
     "clock_offset_s": "Correction of the sensor's clock.",
+    "period_s": "Time of an antenna revolution.",
 }
 _LABELS = {"inputs": "input", "outputs": "output", "radars": "radar"}
 

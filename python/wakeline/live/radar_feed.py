@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
+from wakeline.recording import scans
 from wakeline.wire import SensorClock
 
 _TAU = 2.0 * math.pi
 _MOST_WAITING = 20_000  # plots
+_MEMORY_S, _LEAST_REMEMBERED, _APART_S = 60.0, 40, 0.05  # of plots
+_CHECK_S = 20.0
 
 
 class PlotRow(NamedTuple):
@@ -41,6 +45,48 @@ class Sector(NamedTuple):
     plots: list[PlotRow]
 
 
+class AntennaPeriod:
+    """Finds the period of an antenna from the times and bearings of its plots.
+
+    Parameters
+    ----------
+    period_s : float
+        Supposed until plots show another.
+    """
+
+    def __init__(self, period_s: float) -> None:
+        self.period_s = period_s
+        self._plots: deque[tuple[float, float]] = deque()
+        self._checked_s = -math.inf
+
+    def add(self, plot: PlotRow) -> bool:
+        """Take a plot; whether those of the last while show another period, which it then has."""
+        passed_s = plot.time_s - self._plots[-1][0] if self._plots else math.inf
+        if passed_s < -_MEMORY_S:  # of a clock that was set back
+            self._plots.clear()
+            self._checked_s = -math.inf
+        elif passed_s <= _APART_S:
+            return False
+        self._plots.append((plot.time_s, plot.bearing_rad))
+        while plot.time_s > self._plots[0][0] + _MEMORY_S and len(self._plots) > _LEAST_REMEMBERED:
+            self._plots.popleft()
+        if plot.time_s < self._checked_s + _CHECK_S:
+            return False
+        self._checked_s = plot.time_s
+        return self._find()
+
+    def _find(self) -> bool:
+        time_s, bearing_rad = np.array(self._plots).T
+        if scans.turn_near(time_s, bearing_rad, self.period_s) is not None:
+            return False
+        found_s = scans.revolution_s(time_s, bearing_rad)
+        if found_s is None:
+            return False
+        self.period_s = found_s
+        self._plots.clear()
+        return True
+
+
 @dataclass
 class RadarFeed:
     """Plots of one radar until their sector ends.
@@ -51,8 +97,7 @@ class RadarFeed:
     Attributes
     ----------
     name : str
-    period_s : float
-        Of the antenna, as configured; measured from its marks.
+    antenna : AntennaPeriod
     unused_why : str
         Why its last sector was not used; empty if it was.
     used_s : float
@@ -60,7 +105,7 @@ class RadarFeed:
     """
 
     name: str
-    period_s: float
+    antenna: AntennaPeriod
     clock: SensorClock = field(default_factory=SensorClock)
     plots: int = 0
     sectors: int = 0
@@ -72,6 +117,11 @@ class RadarFeed:
     _waiting: list[PlotRow] = field(default_factory=list)
     _marks: bool = False
     _turn_begin_s: float | None = None
+
+    @property
+    def period_s(self) -> float:
+        """Period of the antenna."""
+        return self.antenna.period_s
 
     def is_silent_at(self, time_s: float) -> bool:
         """Whether it has given nothing for three turns and 10 s."""

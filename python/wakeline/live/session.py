@@ -33,7 +33,7 @@ from .engine import TrackEngine
 from .metrics import metrics_of
 from .outputs import Output, make_output
 from .own_ship import Missing, OwnShipSources, Pose, SourceKey
-from .radar_feed import PlacedPlot, PlotRow, RadarFeed, Sector, columns
+from .radar_feed import AntennaPeriod, PlacedPlot, PlotRow, RadarFeed, Sector, columns
 from .shown import Shown
 from .sources import Receivers, Source
 from .watch import AlarmWatcher
@@ -148,7 +148,9 @@ class Session:
         self.tracker = TrackEngine(
             engine_radars, self.config.settings, self.config.session.window_s
         )
-        self.feeds = {one.name: RadarFeed(one.name, radar.period_s) for one, radar in pairs}
+        self.feeds = {
+            one.name: RadarFeed(one.name, AntennaPeriod(radar.period_s)) for one, radar in pairs
+        }
         self.own = OwnShipSources(self.config.own)
         self.ais = AisPicture()
         self.plane: wl.LocalPlane | None = None
@@ -315,7 +317,7 @@ class Session:
                 plot = PlotRow(
                     when_s, values["range_m"], values["bearing_rad"], stds[0] ** 2, stds[1] ** 2
                 )
-                self._sectors(feed, feed.add(plot))
+                self._plot(feed, plot)
             else:
                 self._sectors(feed, feed.mark(values["from_rad"], values["to_rad"], when_s))
         elif kind == "own":
@@ -337,7 +339,7 @@ class Session:
                 source.problems.add("plot's position", f"not used: {one.reason}")
                 return
         if isinstance(one, PlotRow):
-            self._sectors(feed, feed.add(one))
+            self._plot(feed, one)
         else:
             self._sectors(feed, feed.mark(one.from_rad, one.to_rad, one.time_s))
 
@@ -436,6 +438,12 @@ class Session:
             self._publish()
         if not self.tracker.time_s:  # also while no sector can be used
             self._watch(time_s)
+
+    def _plot(self, feed: RadarFeed, plot: PlotRow) -> None:
+        if feed.antenna.add(plot):
+            index = list(self.feeds).index(feed.name)
+            self.tracker.set_period(index, feed.period_s, plot.time_s)
+        self._sectors(feed, feed.add(plot))
 
     def _sectors(self, feed: RadarFeed, sectors: Sequence[Sector]) -> None:
         for sector in sectors:
@@ -832,6 +840,7 @@ class Session:
                     name: {
                         "plots": feed.plots,
                         "sectors": feed.sectors,
+                        "period_s": feed.period_s,
                         "unused_plots": feed.unused,
                         "excluded_plots": feed.excluded,
                         "unused_why": feed.unused_why,
@@ -881,6 +890,7 @@ class Session:
             "origin_deg": self.origin_deg,
             "tracker": _text(self.tracker.save()),
             "heard": self.tracker.heard,
+            "periods_s": [one.period_s for one in self.tracker.radars],
             "alarms": self.watchers[0].alarms.save(),
             "acquired": list(self.acquired.items()),
             "outputs": {name: _text(octets) for name, octets in numbers.items() if octets},
@@ -893,6 +903,10 @@ class Session:
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from a state; ValueError if it is not that of a session like this one."""
         try:
+            periods_s = zip(self.feeds.values(), state["periods_s"], strict=True)
+            for index, (feed, period_s) in enumerate(periods_s):
+                feed.antenna.period_s = period_s
+                self.tracker.set_period(index, period_s)
             self.tracker.restore(base64.b64decode(state["tracker"]), state.get("heard"))
             if state["origin_deg"] is not None:
                 self._set_origin(*map(float, state["origin_deg"]))

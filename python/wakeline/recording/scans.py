@@ -47,7 +47,7 @@ def scan_numbers(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | 
     """
     seen = np.isfinite(bearing_rad)
     seen_s, seen_rad = time_s[seen], bearing_rad[seen]
-    turn = None if period_s is None else _turn_near(seen_s, seen_rad, period_s)
+    turn = None if period_s is None else turn_near(seen_s, seen_rad, period_s)
     if turn is None:
         return by_time(time_s, period_s)
     even_rad = 2.0 * np.pi * (time_s - time_s[0]) / turn
@@ -59,8 +59,8 @@ def scan_numbers(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float | 
     return np.unique(np.maximum.accumulate(turns), return_inverse=True)[1]
 
 
-def _turn_near(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float) -> float | None:
-    """Duration of a revolution near `period_s`, None if the plots show none."""
+def turn_near(time_s: np.ndarray, bearing_rad: np.ndarray, period_s: float) -> float | None:
+    """Duration of a revolution within 5 % of `period_s`, None if the plots show none."""
     if len(time_s) < _LEAST_PLOTS:
         return None
     likeness = [_likeness(time_s, bearing_rad, turn) for turn in period_s * _NEAR_PERIOD]

@@ -233,6 +233,17 @@ TEST(LateWindow, ShuffledInputsGiveTheTracksOfThoseInOrderBitForBit) {
       }
 }
 
+TEST(LateWindow, NeedsNoMoreRoomTheLongerInputsComeAtRandom) {
+  constexpr int kRoom = 200;  // for three windows of this scene
+  const std::vector<Input> come = shuffled(scene(3, 16, 120.0), kPeriod_s, 3);
+  VesselWindow window = make_window({.max_inputs = kRoom});
+  for (const Input& input : come) (void)give(window, input);
+  (void)window.correct();
+  EXPECT_GT(std::ssize(come), 5 * kRoom);
+  EXPECT_EQ(window.counts().too_late, 0);
+  EXPECT_TRUE(window.tracker().save() == in_order(come).save());
+}
+
 TEST(LateWindow, InputsInTimeAreThoseOfATracker) {
   const std::vector<Input> inputs = scene(4, 8, 75.0);
   VesselWindow window = make_window();
@@ -335,7 +346,7 @@ TEST(LateWindow, AnActionIsNeverTooLateAndNeverAhead) {
 TEST(LateWindow, WithLittleRoomIsShorterAndStillExact) {
   for (const LateWindowConfig& config :
        {LateWindowConfig{.max_inputs = 16}, LateWindowConfig{.max_plots = 1}}) {
-    const TrackerConfig small{.max_plots = 40};
+    const TrackerConfig small{.max_plots = 20};
     const std::vector<Input> come = shuffled(sectors_of(scene(5, 16, 40.0)), 2.0 * kPeriod_s, 5);
     VesselWindow window = make_window(config, small);
     std::vector<Input> taken;

@@ -33,12 +33,13 @@ OwnShip at_rest(double) { return {}; }
 struct Antenna {
   Course own = at_rest;
   double turn_rate_rad_s = 0.0;  ///< of the ship
+  double period_s = kPeriod_s;
 
   [[nodiscard]] double bearing_rad(double time_s) const {
-    return (kTurn / kPeriod_s + turn_rate_rad_s) * time_s;
+    return (kTurn / period_s + turn_rate_rad_s) * time_s;
   }
   [[nodiscard]] double time_s(double bearing_rad) const {
-    return bearing_rad / (kTurn / kPeriod_s + turn_rate_rad_s);
+    return bearing_rad / (kTurn / period_s + turn_rate_rad_s);
   }
 };
 
@@ -206,6 +207,17 @@ TEST(Sectors, AreAsAccurateAsTurns) {
   };
   const double turns = rmse(1);
   for (const int sectors : {8, 32}) EXPECT_NEAR(rmse(sectors) / turns, 1.0, 0.05) << sectors;
+}
+
+TEST(Sectors, AnAntennaMayTurnAtAnotherRateThanItsPeriodSays) {
+  for (const double periods : {0.25, 0.5, 2.5, 4.0, 6.0}) {
+    const Antenna antenna{.period_s = periods * kPeriod_s};
+    VesselTracker tracker = make_tracker();
+    feed(tracker, record(boats(), antenna, 12 * kTurn, 7, 0.9), antenna, even_ends(16, 12),
+         [](const ScanReport&, std::span<const Plot>) {});
+    SCOPED_TRACE(periods);
+    expect_all_tracked(tracker, boats(), 12 * antenna.period_s, 150.0);
+  }
 }
 
 TEST(Sectors, ATrackIsUpdatedAsSoonAsTheBeamHasPassedItsGate) {

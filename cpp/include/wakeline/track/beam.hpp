@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
@@ -69,7 +71,7 @@ class Beam {
     if (!running_) {
       running_ = true;
       swept_from_rad_ = angle_rad_ + compass_angle(from_rad - angle_rad_);
-      angle_rad_ = swept_from_rad_ + width_rad;
+      angle_rad_ = turned_from_rad_ = swept_from_rad_ + width_rad;
       return 0.0;
     }
     double ahead_rad = wrap_angle(from_rad - angle_rad_);
@@ -82,8 +84,13 @@ class Beam {
     if (missed_rad > 0.0) resumed_rad_ = begin_rad;
     if (ahead_rad > kSeam_rad) swept_from_rad_ = begin_rad;
     angle_rad_ = std::max(angle_rad_, begin_rad + width_rad);
+    measure_turn(dt_s, missed_rad > 0.0);
     return missed_rad;
   }
+
+  /// How long a turn takes by its sectors: the shorter of the last two, since data may be missing;
+  /// 0 before the first.
+  [[nodiscard]] double turn_s() const noexcept { return std::min(last_turn_s_, turn_before_s_); }
 
   [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }
 
@@ -113,9 +120,22 @@ class Beam {
     fields(angle_rad_);
     fields(swept_from_rad_);
     fields(resumed_rad_);
+    fields(turned_from_rad_);
+    fields(turning_s_);
+    fields(last_turn_s_);
+    fields(turn_before_s_);
   }
 
  private:
+  void measure_turn(double dt_s, bool missed) noexcept {
+    turning_s_ += dt_s;
+    const double turned_rad = angle_rad_ - turned_from_rad_;
+    if (!missed && turned_rad < kTurn) return;
+    if (!missed) turn_before_s_ = std::exchange(last_turn_s_, turning_s_ * kTurn / turned_rad);
+    turned_from_rad_ = angle_rad_;
+    turning_s_ = 0.0;
+  }
+
   static constexpr double kSame_rad = 1e-6;  ///< no antenna knows its angle better
   /// Between the last sweep of a sector and the first of the next, or rounded: less than a beam.
   static constexpr double kSeam_rad = 0.01;
@@ -124,6 +144,10 @@ class Beam {
   double angle_rad_ = 0.0;
   double swept_from_rad_ = 0.0;
   double resumed_rad_ = -std::numeric_limits<double>::infinity();  ///< after turns that it missed
+  double turned_from_rad_ = 0.0;  ///< where the turn begins that is being measured
+  double turning_s_ = 0.0;        ///< since then
+  double last_turn_s_ = 0.0;
+  double turn_before_s_ = std::numeric_limits<double>::infinity();
 };
 
 /// Arc tangent of a positive slope. Of a gentle one it is the slope, which takes less time and is

@@ -360,8 +360,9 @@ class LateWindow {
     for (std::size_t place = from.inputs; place < log_.size(); ++place) {
       if (!give(place)) give_again(place);
       work += log_[place].work;
-      // Where the next late input of the same sensor will be.
-      if (place == last_late_) hold(place + 1, work);
+      // Where the next late input of the same sensor will be, and before, as they may differ.
+      if (place == last_late_ || (place < last_late_ && is_hold_due(log_[place].time_s)))
+        hold(place + 1, work);
     }
     last_late_ = kNone;
     list_numbers(after_);
@@ -386,9 +387,12 @@ class LateWindow {
     snapshot.time_s = log_[inputs - 1].time_s;
   }
 
+  [[nodiscard]] bool is_hold_due(double time_s) noexcept {
+    return time_s - newest_held().time_s >= kSpacing * config_.window_s;
+  }
+
   void hold_if_due() noexcept {
-    if (is_correct() && progress_.newest_s - newest_held().time_s >= kSpacing * config_.window_s)
-      hold(log_.size(), work_);
+    if (is_correct() && is_hold_due(progress_.newest_s)) hold(log_.size(), work_);
   }
 
   /// Releases the snapshot without which the others are least far apart; not the oldest, nor the

@@ -115,7 +115,8 @@ struct Picture {
   [[nodiscard]] double longest_period_s() const noexcept {
     double longest_s = 0.0;
     for (const RadarState& radar : radars)
-      if (radar.in_use) longest_s = std::max(longest_s, radar.radar.period_s);
+      if (radar.in_use)
+        longest_s = std::max({longest_s, radar.radar.period_s, radar.beam.turn_s()});
     return longest_s;
   }
 

@@ -209,7 +209,7 @@ export class Panel {
       const age = Math.round(one.age_s ?? NaN);
       const off = Math.abs(one.clock_offset_s) > 0 ? `, its clock is ${minutes(Math.abs(one.clock_offset_s))} ${one.clock_offset_s > 0 ? "slow" : "fast"}` : "";
       const unused = one.unused_why ? `, not used: ${one.unused_why}` : "";
-      rows.push([`Radar ${name}`, Number.isFinite(age) ? `${age} s old, ${one.plots} plots${off}${unused}` : "nothing received", age > 10 || !Number.isFinite(age) || unused ? "bad" : "good"]);
+      rows.push([`Radar ${name}`, Number.isFinite(age) ? `${age} s old, ${one.plots} plots, ${(60 / one.period_s).toFixed(0)} turns/min${off}${unused}` : "nothing received", age > 10 || !Number.isFinite(age) || unused ? "bad" : "good"]);
     }
     for (const [name, one] of Object.entries(status.inputs ?? {})) {
       const age = Math.round(one.age_s ?? NaN);
