@@ -537,6 +537,20 @@ TEST(Sectors, ThatOverlapOrAreGivenTwiceGiveNoSecondUpdate) {
   }
 }
 
+TEST(Sectors, OfAnAntennaThatTurnsAnticlockwiseAreRejectedBeforeTheySumToATurn) {
+  VesselTracker tracker = make_tracker();
+  int rejected = 0;
+  for (int k = 0; k < 16; ++k) {
+    const double to_rad = compass_angle(-kTurn * k / 16);
+    const Sector sector{0, to_rad - kTurn / 16, to_rad, (k + 1) / 16.0 * kPeriod_s};
+    const ScanReport report = tracker.sector(sector);
+    rejected += report.status == Status::kNegativeTimeStep;
+    EXPECT_TRUE(report.status == Status::kOk || rejected > 0);
+  }
+  EXPECT_GT(rejected, 1);
+  EXPECT_EQ(tracker.sector({0, 1.0, 1.0, 2 * kPeriod_s}).status, Status::kOk) << "time passes";
+}
+
 TEST(Sectors, APlotOutsideItsSectorIsNotLost) {
   VesselTracker tracker = make_tracker();
   const std::vector<Boat> one{boats()[2]};

@@ -81,6 +81,7 @@ class Beam {
     }
     const double missed_rad = kTurn * std::max(std::floor((ahead_rad + kSame_rad) / kTurn), 0.0);
     const double begin_rad = angle_rad_ + ahead_rad;
+    behind_rad_ = begin_rad + width_rad > angle_rad_ + kSame_rad ? 0.0 : behind_rad_ + width_rad;
     if (missed_rad > 0.0) resumed_rad_ = begin_rad;
     if (ahead_rad > kSeam_rad) swept_from_rad_ = begin_rad;
     angle_rad_ = std::max(angle_rad_, begin_rad + width_rad);
@@ -91,6 +92,13 @@ class Beam {
   /// How long a turn takes by its sectors: the shorter of the last two, since data may be missing;
   /// 0 before the first.
   [[nodiscard]] double turn_s() const noexcept { return std::min(last_turn_s_, turn_before_s_); }
+
+  /// Whether a sector goes against the turn of the antenna: it is behind the beam, as those of the
+  /// last quarter of a turn were.
+  [[nodiscard]] bool goes_back(double from_rad, double width_rad) const noexcept {
+    return width_rad > 0.0 && behind_rad_ >= kTurn / 4 &&
+           wrap_angle(from_rad - angle_rad_) + width_rad <= kSame_rad;
+  }
 
   [[nodiscard]] double angle_rad() const noexcept { return angle_rad_; }
 
@@ -120,6 +128,7 @@ class Beam {
     fields(angle_rad_);
     fields(swept_from_rad_);
     fields(resumed_rad_);
+    fields(behind_rad_);
     fields(turned_from_rad_);
     fields(turning_s_);
     fields(last_turn_s_);
@@ -144,6 +153,7 @@ class Beam {
   double angle_rad_ = 0.0;
   double swept_from_rad_ = 0.0;
   double resumed_rad_ = -std::numeric_limits<double>::infinity();  ///< after turns that it missed
+  double behind_rad_ = 0.0;       ///< width of the last sectors, of which none was ahead
   double turned_from_rad_ = 0.0;  ///< where the turn begins that is being measured
   double turning_s_ = 0.0;        ///< since then
   double last_turn_s_ = 0.0;

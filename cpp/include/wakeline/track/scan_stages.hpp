@@ -61,6 +61,9 @@ class ScanStages {
       return picture_.rejected(Status::kNegativeTimeStep);
     if (picture_.started && time_s < picture_.scan_time_s - before.radar.period_s)
       return picture_.rejected(Status::kNegativeTimeStep);
+    if (sector != nullptr &&
+        before.beam.goes_back(sector->from_rad, Beam::width_rad(sector->from_rad, sector->to_rad)))
+      return picture_.rejected(Status::kNegativeTimeStep);
     picture_.clear_results();
     picture_.at_hand = radar;
     whole_turn_ = sector == nullptr;

@@ -73,7 +73,9 @@ class Tracker {
   /// Where sectors leave a gap, tracks are neither updated nor miss; a track that the beam has not
   /// passed for two periods coasts by time, a miss a period. A sector of no width lets time pass.
   /// One of a whole turn is `process`. Rejects a sector of a radar that is not known or from
-  /// nowhere to nowhere (`kNotFinite`), or of a time that `process` rejects: nothing changes.
+  /// nowhere to nowhere (`kNotFinite`), of a time that `process` rejects, or behind the beam after a
+  /// quarter of a turn of such, as of an antenna that turns anticlockwise (`kNegativeTimeStep`):
+  /// nothing changes.
   ScanReport sector(const Sector& sector) noexcept;
 
   /// Adds a radar and returns its number, the least that is free; takes memory. Throws
