@@ -25,8 +25,14 @@ Track& open(TrackList& tracks, std::int64_t id, const Vec<double, 4>& mean) {
   return track;
 }
 
-std::vector<int> found(Duplicates& duplicates, TrackList& tracks) {
-  const std::span<const int> slots = duplicates.find(tracks, tracks.slots(), kPeriod_s, 0.3, 0.5);
+bool never(const Track&, const Track&) { return false; }
+bool always(const Track&, const Track&) { return true; }
+
+template <class SeenByOthers = decltype(never)>
+std::vector<int> found(Duplicates& duplicates, TrackList& tracks, int radars = 1,
+                       const SeenByOthers& seen_by_others = never) {
+  const std::span<const int> slots =
+      duplicates.find(tracks, tracks.slots(), kPeriod_s, 0.3, 0.5, radars, seen_by_others);
   return {slots.begin(), slots.end()};
 }
 
@@ -63,6 +69,17 @@ TEST(Duplicates, ATentativeOneGoesAtOnceAndAVelocityTellsTargetsApart) {
   const int same = open(tracks, -3, {3.0, 5.0, 0.0, 0.0}).slot;
   open(tracks, -4, {0.0, -9.0, 0.0, 0.0});
   EXPECT_EQ(found(duplicates, tracks), std::vector<int>{same});
+}
+
+TEST(Duplicates, EachSeenByAnotherRadarAreAsFarApartAsIndependentEstimates) {
+  TrackList tracks(10);
+  Duplicates duplicates(TrackerConfig{}, kThreshold);
+  open(tracks, 1, {0.0, 5.0, 0.0, 0.0});
+  const int same = open(tracks, -3, {20.0, 5.0, 20.0, 3.0}).slot;  // 1.4, 1.4 and 1.1 sigmas
+  open(tracks, -4, {0.0, 5.0, 60.0, 0.0});
+  EXPECT_TRUE(found(duplicates, tracks).empty());
+  EXPECT_TRUE(found(duplicates, tracks, 2, never).empty());
+  EXPECT_EQ(found(duplicates, tracks, 2, always), std::vector<int>{same});
 }
 
 // A track that is to be deleted itself is no reason to delete another.
@@ -143,7 +160,8 @@ TEST(Duplicates, AreThoseOfAllPairs) {
         break;
       }
     }
-    const std::span<const int> found = duplicates.find(tracks, slots, kPeriod_s, from_rad, to_rad);
+    const std::span<const int> found =
+        duplicates.find(tracks, slots, kPeriod_s, from_rad, to_rad, 1, never);
     EXPECT_EQ(std::vector<int>(found.begin(), found.end()), expected);
   }
 }

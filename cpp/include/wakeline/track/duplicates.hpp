@@ -77,15 +77,21 @@ class Duplicates {
   /// Which tracks of these slots are to be deleted, in order: tentative ones at once, those with a
   /// number after some scans in a row, which it counts. Valid until the next call.
   /// Tracks whose times are more than two periods of the antenna apart are not compared. The slots
-  /// are those between two bearings, which only serves to leave out others sooner.
+  /// are those between two bearings, which only serves to leave out others sooner. Two tracks that
+  /// `seen_by_others(a, b)`, each by radars that do not see the other, are on one target as far
+  /// apart as independent estimates of it are.
+  template <class SeenByOthers>
   std::span<const int> find(TrackList& tracks, std::span<const int> slots, double period_s,
-                            double from_rad, double to_rad) noexcept {
+                            double from_rad, double to_rad, int radars,
+                            const SeenByOthers& seen_by_others) noexcept {
     longest_s_ = 2.0 * period_s;
+    farthest_ = radars > 1 ? std::max(distance_, kSeenByOthers) : distance_;
     index(tracks, slots, Outline(from_rad, to_rad));
     found_.clear();
     for (const int slot : slots) {
       Track& track = tracks.at(slot);
-      track.duplicate_scans = has_senior(tracks, track) ? track.duplicate_scans + 1 : 0;
+      track.duplicate_scans =
+          has_senior(tracks, track, seen_by_others) ? track.duplicate_scans + 1 : 0;
       const bool numbered = track.confirmed() && track.id > 0;
       if (track.duplicate_scans < (numbered ? scans_ : 1)) continue;
       ends_[static_cast<std::size_t>(slot)] = 1;
@@ -157,7 +163,7 @@ class Duplicates {
   /// Tracks of one time whose variances sum to that are not on one target farther apart, squared; a
   /// little more for rounding.
   [[nodiscard]] double reach_m2(double variance_m2) const noexcept {
-    return 1.002 * std::max(distance_ * variance_m2, length_m_ * length_m_);
+    return 1.002 * std::max(farthest_ * variance_m2, length_m_ * length_m_);
   }
 
   /// Variance of the position along the axis where it is larger.
@@ -166,7 +172,9 @@ class Duplicates {
   }
 
   /// Whether a senior track, which is not to be deleted itself, is on the same target.
-  [[nodiscard]] bool has_senior(const TrackList& tracks, const Track& track) const noexcept {
+  template <class SeenByOthers>
+  [[nodiscard]] bool has_senior(const TrackList& tracks, const Track& track,
+                                const SeenByOthers& seen_by_others) const noexcept {
     const auto reach = [&](double other_m2) {
       return std::sqrt(reach_m2(widest_m2(track) + other_m2)) + way_m_;
     };
@@ -185,13 +193,18 @@ class Duplicates {
       const Gaussian<4> then =
           dt_s == 0.0 ? other.kinematics : at_constant_velocity(other.kinematics, dt_s);
       found = same_target(then, track.kinematics, distance_) ||
+              (farthest_ > distance_ && seen_by_others(track, other) &&
+               same_target(then, track.kinematics, farthest_)) ||
               same_vessel(other, then, track, length_m_, velocity_threshold_);
     });
     return found;
   }
 
+  static constexpr double kSeenByOthers = 9.5;  ///< of four degrees of freedom 95 %
+
   double longest_s_ = 0.0;  ///< between the times of two tracks that are compared
   double distance_;
+  double farthest_ = 0.0;  ///< that two tracks on one target are apart, as `distance_`
   double length_m_;
   int scans_;
   double velocity_threshold_;

@@ -27,12 +27,13 @@
 
 namespace wakeline {
 
-/// A plot that no track owns.
+/// A plot that perhaps no track owns.
 struct FreePlot {
   Gaussian<2> position;
   double time_s;
   double beam_rad;  ///< as in `ScanPlot`
   ConvertedErrors errors = {};
+  double free = 1.0;  ///< the probability of that
 };
 
 /// The free plots of the turn before, found by position. Memory is taken by the constructor.
@@ -69,9 +70,12 @@ class FreePlots {
   /// Adds the plots that do not wait and are free with more than the least probability.
   void add(const ScanPlots& plots, std::span<const double> free_probability,
            double least) noexcept {
-    for (int k = 0; k < plots.size() && plots_.size() < capacity_; ++k)
-      if (free_probability[static_cast<std::size_t>(k)] > least && !plots[k].waits)
-        plots_.push_back({plots[k].position, plots[k].time_s, plots[k].beam_rad, plots[k].errors});
+    for (int k = 0; k < plots.size() && plots_.size() < capacity_; ++k) {
+      const ScanPlot& plot = plots[k];
+      const double free = free_probability[static_cast<std::size_t>(k)];
+      if (free > least && !plot.waits)
+        plots_.push_back({plot.position, plot.time_s, plot.beam_rad, plot.errors, free});
+    }
   }
 
   /// Drops the plots up to an angle of the beam.
@@ -97,6 +101,7 @@ class FreePlots {
       fields(plot.time_s);
       fields(plot.beam_rad);
       fields(plot.errors);
+      fields(plot.free);
     }
     if (fields.loading()) sort(static_cast<std::size_t>(found));
   }
@@ -159,11 +164,13 @@ class TrackInitiation {
     };
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
-      if (plots[k].waits || !(ownership.free_probability()[at] > config_.free_plot)) continue;
+      const double free = ownership.free_probability()[at];
+      if (plots[k].waits || !(free > config_.free_plot)) continue;
       if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
         const LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
-        const double probability = existence(radar, earlier, plots[k], first_seen(earlier),
+        const double first_per_m2 = earlier.free * free * first_seen(earlier);
+        const double probability = existence(radar, earlier, plots[k], first_per_m2,
                                              clutter.without(own, plots, k), detection_probability);
         if (!has_room(probability)) return;
         start(TrackStart{belief(radar, earlier, plots[k]), plots[k].time_s, plots[k].beam_rad,
@@ -208,8 +215,8 @@ class TrackInitiation {
   static constexpr int kLeastScans = 2;  ///< so far apart two plots of a start may be at least
 
   /// Probability that two plots are a target's and not clutter of density ρ: odds of β/ρ for the
-  /// first, with the density β of targets first seen; of PD N(z₂; z₁) / ρ for the second, with the
-  /// prior of the velocity; and 1 - PD for each scan between.
+  /// first, with the density β of targets first seen where both plots are free; of PD N(z₂; z₁) / ρ
+  /// for the second, with the prior of the velocity; and 1 - PD for each scan between.
   [[nodiscard]] double existence(const Radar& radar, const FreePlot& earlier, const ScanPlot& later,
                                  double first_seen_per_m2, double clutter_per_m2,
                                  double detection_probability) const noexcept {

@@ -681,10 +681,28 @@ class ScanStages {
     // Of a whole turn any two bearings do.
     const double from_rad = sector == nullptr ? 0.0 : sector->from_rad;
     const double to_rad = sector == nullptr ? kPi<double> / 2 : sector->to_rad;
+    const auto seen_by_others = [&](const Track& a, const Track& b) {
+      return are_seen_by_others(a, b);
+    };
     for (const int slot :
-         duplicates_.find(picture_.tracks, due_, picture_.longest_period_s(), from_rad, to_rad))
+         duplicates_.find(picture_.tracks, due_, picture_.longest_period_s(), from_rad, to_rad,
+                          picture_.radars_in_use(), seen_by_others))
       lose(picture_.tracks.at(slot), LossReason::kDuplicate);
     forget_lost();
+  }
+
+  /// Whether each of two tracks is seen by a radar, and none sees both.
+  [[nodiscard]] bool are_seen_by_others(const Track& a, const Track& b) const noexcept {
+    constexpr int kMisses = 2;
+    bool a_is_seen = false, b_is_seen = false;
+    for (const RadarState& radar : picture_.radars) {
+      if (!radar.in_use) continue;
+      const Look &at_a = radar.look(a), &at_b = radar.look(b);
+      if (std::max(at_a.misses, at_b.misses) < kMisses) return false;
+      a_is_seen = a_is_seen || (at_a.misses == 0 && std::isfinite(at_a.seen_s));
+      b_is_seen = b_is_seen || (at_b.misses == 0 && std::isfinite(at_b.seen_s));
+    }
+    return a_is_seen && b_is_seen;
   }
 
   void lose(const Track& track, LossReason reason) noexcept {
