@@ -48,6 +48,64 @@ def test_errors_that_stay_are_reported_on_recordings(name):
     assert consistency._recording_run(name)["debiased_position_nees"] < 3.0
 
 
+def straight_ships_nees(scale_of, stays_m=0.0, offset_rad=0.0, seed=0):
+    """NEES of the position of five ships on straight courses, less the mean offset of the bearing.
+
+    `scale_of` draws the factors on the stated errors of the plots of a scan; the echoes also wander
+    by `stays_m` with a time constant of 40 s.
+    """
+    rng = np.random.default_rng(seed)
+    radar = wl.Radar(range_std_m=10.0, bearing_std_rad=np.deg2rad(0.5), period_s=2.5)
+    tracker = wl.Tracker(radar)
+    place = rng.uniform(2e3, 8e3, 5) * np.exp(2j * np.pi * np.arange(5) / 5)
+    velocity = rng.uniform(5.0, 10.0, 5) * np.exp(1j * rng.uniform(-np.pi, np.pi, 5))
+    wander, keeps = np.zeros(5, complex), np.exp(-2.5 / 40.0)
+    errors, across, covariance = [], [], []
+    for k in range(300):
+        scale = scale_of(rng, 5)
+        truth = place + 2.5 * k * velocity
+        normal = rng.standard_normal((6, 5))
+        wander = keeps * wander + stays_m * np.sqrt(1 - keeps**2) * (normal[0] + 1j * normal[1])
+        echo = truth + wander + radar.extent_std_m * scale * (normal[2] + 1j * normal[3])
+        tracker.process(
+            2.5 * k,
+            range_m=np.abs(echo) + radar.range_std_m * scale * normal[4],
+            bearing_rad=np.angle(echo) + radar.bearing_std_rad * scale * normal[5] + offset_rad,
+        )
+        table = tracker.tracks()
+        for mean, p in zip(table.mean, table.covariance, strict=True):
+            if k < consistency.SETTLED_SCANS:
+                continue
+            of = truth[np.abs(truth - (mean[0] + 1j * mean[2])).argmin()]
+            errors.append([mean[0] - of.real, mean[2] - of.imag])
+            across.append([-of.imag, of.real])
+            covariance.append(p[::2, ::2])
+    error, across = np.array(errors), np.array(across)
+    error -= (error * across).sum() / (across**2).sum() * across
+    return consistency.nees(error, np.array(covariance)).mean()
+
+
+def outliers(rng, n):
+    """As often and as far as the default settings say."""
+    config = wl.TrackerConfig()
+    return np.where(rng.random(n) < config.outlier_probability, config.outlier_scale, 1.0)
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        {"scale_of": lambda rng, n: np.ones(n)},
+        {"scale_of": outliers},
+        {"scale_of": lambda rng, n: np.ones(n), "offset_rad": 0.01},
+        {"scale_of": lambda rng, n: np.full(n, 0.3), "stays_m": 25.0},
+        *({"scale_of": lambda rng, n, s=s: np.full(n, s)} for s in (0.5, 0.7, 1.4, 2.0)),
+    ],
+    ids=["stated", "outliers", "offset", "wandering", "half", "0.7", "1.4", "double"],
+)
+def test_independent_errors_are_not_taken_for_errors_that_stay(case):
+    assert 0.9 < np.mean([straight_ships_nees(**case, seed=seed) for seed in range(4)]) < 3.0
+
+
 @pytest.mark.parametrize("scene", ["crossings", "clutter_300", "craft"])
 def test_existence_is_calibrated(scene):
     existence, real = consistency.existences(scene, 0)

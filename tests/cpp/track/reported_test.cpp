@@ -8,6 +8,7 @@
 
 #include "support/draw.hpp"
 #include "support/matrix_assert.hpp"
+#include "wakeline/track/config.hpp"
 
 namespace wakeline::reported_test {
 namespace {
@@ -20,55 +21,119 @@ double nis(Draw& draw) {
   return a * a + b * b;
 }
 
-/// Of looks whose NIS is so much of what is stated, each alike the one before by so much.
-double share_of(std::uint64_t seed, int looks, double scale, double alike = 0.6) {
+/// What a radar has learned from a target whose whitened innovations have the variance `shown`, of
+/// which the part `stays` is the same at each look, and which are outliers as often and as far as
+/// the default settings say where `outliers`.
+struct Errors {
+  double shown = 1.0, stays = 0.0;
+  bool outliers = false;
+};
+
+LearnedErrors learned(std::uint64_t seed, int looks, const Errors& of) {
+  const TrackerConfig config;
   Draw draw(seed);
-  PersistentErrors errors;
+  LearnedErrors errors;
+  const auto vector = [&](double variance) -> Vec<double, 2> {
+    return std::sqrt(variance) * draw.normals<2>();
+  };
+  // Of a length that does not vary from radar to radar.
+  const double angle_rad = draw.uniform(0.0, 2.0 * kPi<double>);
+  const Vec<double, 2> same = std::sqrt(2.0 * of.stays * of.shown) *
+                              Vec<double, 2>(std::cos(angle_rad), std::sin(angle_rad));
+  Vec<double, 2> before = Vec<double, 2>::Zero();
   for (int k = 0; k < looks; ++k) {
-    const double square = scale * nis(draw);
-    errors.learn(square, alike * square);
+    const bool is_outlier = of.outliers && draw.uniform(0.0, 1.0) < config.outlier_probability;
+    const double variance = is_outlier ? config.outlier_variance() : 1.0;
+    const Vec<double, 2> innovation = same + vector((1.0 - of.stays) * of.shown * variance);
+    errors.learn(innovation.squaredNorm(), innovation.dot(before));
+    before = innovation;
   }
-  return errors.share();
+  return errors;
 }
 
-TEST(PersistentErrors, AreNoneBeforeALookAndWhereErrorsAreAsStated) {
-  EXPECT_EQ(PersistentErrors{}.share(), 0.0);
+/// The means over many radars.
+struct Mean {
+  double stays = 0.0, scale = 0.0, of_large_weight = 0.0;
+};
+
+Mean mean_learned(int looks, const Errors& of) {
+  constexpr int kRadars = 200;
+  Mean mean;
+  for (std::uint64_t seed = 0; seed < kRadars; ++seed) {
+    const LearnedErrors errors = learned(seed, looks, of);
+    mean.stays += errors.stays() / kRadars;
+    mean.scale += errors.scale(0.0) / kRadars;
+    mean.of_large_weight += errors.scale(1.0) / kRadars;
+  }
+  return mean;
+}
+
+TEST(LearnedErrors, AreTheStatedOnesBeforeALookAndWhereTheseCome) {
+  EXPECT_EQ(LearnedErrors{}.stays(), 0.0);
+  EXPECT_EQ(LearnedErrors{}.scale(1.0), 1.0);
   for (const int looks : {20, 100, 1000}) {
-    double sum = 0.0;
-    constexpr int kRadars = 200;
-    for (std::uint64_t seed = 0; seed < kRadars; ++seed) sum += share_of(seed, looks, 1.0);
-    EXPECT_LT(sum / kRadars, 0.01) << looks;
+    const Mean mean = mean_learned(looks, {});
+    EXPECT_LT(mean.stays, 0.01) << looks;
+    EXPECT_NEAR(mean.scale, 1.0, 0.1) << looks;
   }
 }
 
-TEST(PersistentErrors, AreWhatInnovationsDoNotShow) {
+TEST(LearnedErrors, DoNotStayWhereTheyAreIndependent) {
+  for (const double shown : {0.3, 0.5, 2.0, 4.0}) {
+    const Mean mean = mean_learned(500, {shown});
+    EXPECT_LT(mean.stays, 0.01) << shown;
+    EXPECT_GT(mean.scale, 0.85 * shown) << shown;
+    EXPECT_LT(mean.scale, (shown < 1.0 ? 1.5 : 1.15) * shown) << shown;
+  }
+}
+
+TEST(LearnedErrors, LeaveACovarianceOfAnEstimateThatErrsByNothing) {
+  LearnedErrors errors;
+  for (int k = 0; k < 5000; ++k) errors.learn(1e-12, 0.0);
+  EXPECT_GE(errors.scale(0.1), 0.1);
+  EXPECT_TRUE(std::isfinite(errors.stays()));
+}
+
+// An outlier is not like the plot before: it makes the estimate worse, but does not stay in it.
+TEST(LearnedErrors, DoNotStayWhereOutliersAreIndependent) {
+  const Mean mean = mean_learned(500, {.outliers = true});
+  EXPECT_LT(mean.stays, 0.01);
+  EXPECT_GT(mean.scale, 1.4);
+  EXPECT_LT(mean.scale, 2.0);
+  EXPECT_LT(mean_learned(500, {.shown = 0.3, .outliers = true}).stays, 0.01);
+}
+
+TEST(LearnedErrors, AreAlsoOfTheCourseWhereAPlotHasALargeWeight) {
+  const Mean mean = mean_learned(500, {2.0});
+  EXPECT_NEAR((mean.of_large_weight - 1.0) / (mean.scale - 1.0), 2.5, 1e-6);
+}
+
+TEST(LearnedErrors, StayWhereInnovationsAreAlike) {
+  for (const double part : {0.3, 0.6, 0.9}) {
+    const Mean mean = mean_learned(500, {1.0 / (1.0 - part), part});
+    EXPECT_NEAR(mean.stays, 0.5 * part / (1.0 - part), 0.1 / (1.0 - part)) << part;
+    EXPECT_NEAR(mean.scale, 1.0, 0.1) << part << ", the others are as stated";
+  }
+}
+
+TEST(LearnedErrors, StayWhereInnovationsDoNotShowThem) {
   for (const double shown : {0.5, 0.3}) {
-    double sum = 0.0;
-    for (std::uint64_t seed = 0; seed < 50; ++seed) sum += share_of(seed, 500, shown) / 50;
-    EXPECT_NEAR(sum, 1.0 / shown - 1.0, 0.1 / shown) << shown;
+    const double stays = mean_learned(500, {shown, 0.6}).stays;
+    EXPECT_NEAR(stays, 1.0 / shown - 1.0, 0.35 / shown) << shown;
+    EXPECT_GT(stays, 0.9 * (1.0 / shown - 1.0)) << shown;
   }
-}
-
-TEST(PersistentErrors, AreNoneOfARadarThatIsBetterThanStated) {
-  for (const double shown : {0.5, 0.3, 0.1}) EXPECT_EQ(share_of(1, 500, shown, 0.0), 0.0) << shown;
-}
-
-TEST(PersistentErrors, AreWhatInnovationsShowBeyondTheStatedErrors) {
-  double sum = 0.0;
-  for (std::uint64_t seed = 0; seed < 50; ++seed) sum += share_of(seed, 500, 2.0) / 50;
-  EXPECT_NEAR(sum, 1.0, 0.1);
 }
 
 // An outlier in ten does not hide that the others are half of what is stated.
-TEST(PersistentErrors, AreLearnedBesideOutliers) {
+TEST(LearnedErrors, StayBesideOutliers) {
   Draw draw(4);
-  PersistentErrors errors;
+  LearnedErrors errors;
   for (int k = 0; k < 1000; ++k) {
     const double square = k % 10 == 0 ? 1e6 : 0.4 * nis(draw);
     errors.learn(square, 0.6 * square);
   }
-  EXPECT_GT(errors.share(), 0.8);
-  EXPECT_LT(errors.share(), 2.5);
+  EXPECT_GT(errors.stays(), 0.8);
+  EXPECT_LT(errors.stays(), 2.5);
 }
 
 // Targets of one range, seen in directions that err by s: what the line of sight leaves out.
@@ -95,7 +160,7 @@ TEST(Reported, AddsWhatStaysAndAnAlterationThatDoesNotShow) {
   const Gaussian<4> belief{{100.0, 6.0, -50.0, 8.0}, draw.definite<4>()};
   Mat<double, 2, 2> stays;
   stays << 9.0, 2.0, 2.0, 4.0;
-  const Gaussian<4> found = reported(belief, 1.0, 1.0, 100, stays);
+  const Gaussian<4> found = reported(belief, 1.0, 1.0, 100, 1.0, stays);
   EXPECT_EQ(found.mean, belief.mean);
   const Mat<double, 4, 4> more = found.covariance - belief.covariance;
   const Vec<double, 4> ahead(0.0, 0.6, 0.0, 0.8), abeam(0.0, -0.8, 0.0, 0.6);
@@ -138,7 +203,7 @@ TEST(Reported, IsTheErrorOfAFilterWhoseNoiseDoesNotCome) {
     Gaussian<4> belief{Vec<double, 4>::Zero(), Mat<double, 4, 4>::Identity()};
     belief.covariance(0, 0) = belief.covariance(2, 2) = filter.variance;
     const Gaussian<4> found =
-        reported(belief, filter.variance, filter.gain, 2000, Mat<double, 2, 2>::Zero());
+        reported(belief, filter.variance, filter.gain, 2000, 1.0, Mat<double, 2, 2>::Zero());
     const double ratio = found.covariance(0, 0) / filter.error_variance;
     EXPECT_GE(ratio, 1.0) << filter.gain;
     EXPECT_LT(ratio, filter.gain < 0.05 ? 1.2 : 1.5) << filter.gain;
@@ -151,9 +216,25 @@ TEST(Reported, LeavesOutNothingOfWhatAPredictionAdds) {
   const Gaussian<4> estimate{Vec<double, 4>::Zero(), 4.0 * Mat<double, 4, 4>::Identity()};
   Gaussian<4> later = estimate;
   later.covariance(0, 0) = later.covariance(2, 2) = 25.0;
-  const double left_out = 4.0 - reported(estimate, 4.0, 0.01, 2000, none).covariance(0, 0);
+  const double left_out = 4.0 - reported(estimate, 4.0, 0.01, 2000, 1.0, none).covariance(0, 0);
   EXPECT_GT(left_out, 1.0);
-  EXPECT_NEAR(25.0 - reported(later, 4.0, 0.01, 2000, none).covariance(0, 0), left_out, 1e-12);
+  EXPECT_NEAR(25.0 - reported(later, 4.0, 0.01, 2000, 1.0, none).covariance(0, 0), left_out, 1e-12);
+}
+
+// The factor is of what the filter knows; what a prediction adds is not of the radar.
+TEST(Reported, ScalesTheVarianceOfTheEstimate) {
+  const Mat<double, 2, 2> none = Mat<double, 2, 2>::Zero();
+  Gaussian<4> belief{Vec<double, 4>::Zero(), 4.0 * Mat<double, 4, 4>::Identity()};
+  for (const double scale : {0.1, 0.5, 3.0}) {
+    const Gaussian<4> now = reported(belief, 4.0, 1.0, 100, scale, none);
+    EXPECT_NEAR(now.covariance(0, 0), 4.0 * scale, 1e-12);
+    EXPECT_EQ(now.covariance(1, 1), 4.0) << "of the velocity";
+    EXPECT_GT(reported(belief, 4.0, 0.01, 2000, scale, none).covariance(2, 2), 0.6 * 4.0 * scale);
+    Gaussian<4> later = belief;
+    later.covariance(0, 0) = later.covariance(2, 2) = 25.0;
+    EXPECT_NEAR(reported(later, 4.0, 1.0, 100, scale, none).covariance(0, 0), 21.0 + 4.0 * scale,
+                1e-12);
+  }
 }
 
 TEST(GainOfATrack, IsTheWeightOfAPlotWhereOneRadarSeesIt) {
@@ -169,7 +250,7 @@ TEST(Reported, KeepsTheCovarianceOfAPlot) {
   Draw draw(8);
   const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
   for (const double gain : {1.0, 1.7})
-    EXPECT_EQ(reported(belief, 1.0, gain, 100, Mat<double, 2, 2>::Zero()).covariance,
+    EXPECT_EQ(reported(belief, 1.0, gain, 100, 1.0, Mat<double, 2, 2>::Zero()).covariance,
               belief.covariance);
 }
 
@@ -179,7 +260,7 @@ TEST(Reported, KeepsTheCovarianceOfALineThroughAllPlots) {
   const Gaussian<4> belief{Vec<double, 4>::Zero(), draw.definite<4>()};
   for (const int plots : {5, 40, 400}) {
     const double gain = 2.0 * (2 * plots - 1) / (plots * (plots + 1.0));
-    EXPECT_EQ(reported(belief, 1.0, gain, plots, Mat<double, 2, 2>::Zero()).covariance,
+    EXPECT_EQ(reported(belief, 1.0, gain, plots, 1.0, Mat<double, 2, 2>::Zero()).covariance,
               belief.covariance);
   }
 }

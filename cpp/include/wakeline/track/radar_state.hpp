@@ -40,7 +40,7 @@ struct RadarState {
   Beam beam;
   OwnShip own;  ///< as of the last plot, moved on
   DetectionProbability detection_probability;
-  PersistentErrors persistent_errors;
+  LearnedErrors learned_errors;
   ScanPlots plots;
   ClutterDensity clutter;
   PlotOwnership ownership;
@@ -77,7 +77,7 @@ struct RadarState {
     beam.archive(fields);
     fields(own);
     detection_probability.archive(fields);
-    persistent_errors.archive(fields);
+    learned_errors.archive(fields);
     clutter.archive(fields);
     initiation.archive(fields);
     plots.archive(fields);

@@ -11,28 +11,30 @@
 
 namespace wakeline {
 
-/// The share of a radar's errors that stays from scan to scan, learned from the innovations of its
-/// confirmed tracks.
+/// What the innovations of its confirmed tracks show of a radar's errors, for what is reported.
 ///
-/// A filter averages errors that are independent from scan to scan. Those that stay, as an echo
-/// wanders along the hull or a bearing is off, are in its estimate, and its covariance does not
-/// know of them. Two signs of them are learned: innovations that are smaller than the errors of the
-/// radar, which must then be elsewhere, and innovations that are larger, by which the errors are
-/// larger than stated. Smaller ones are a sign only as far as each is like the one before: those of
-/// a radar that is better than stated are independent. With the normalized innovation squared (NIS)
-/// of a plot, χ² of two degrees of freedom where all is as stated, and the product u·u' of whitened
-/// innovations that follow each other:
+/// The covariance of a filter is that of stated errors, independent from scan to scan. If they are
+/// larger or smaller, or have more outliers, so is it. Errors that stay, as an echo wanders along
+/// the hull or a bearing is off, are not averaged, and stay in the estimate in full. They make each
+/// innovation like the one before; independent errors and outliers do not. With the normalized
+/// innovation squared (NIS) of a plot, χ² of two degrees of freedom where all is as stated, and the
+/// product u·u' of whitened innovations that follow each other:
 ///
 ///     w = 1 / E[exp(-NIS/2)] - 1           1, and the scale of what is not an outlier
 ///     m = E[min(NIS, 18)] / 2              1, and the scale of all
-///     r = E[u·u'] / E[min(NIS, 18)]        0, and about 1 - w of errors that stay
-///     share = (1/w - 1), at most 2.5, if w < 0.9 - 2.3 / sqrt(n) and r > 0.4 (1 - w),
-///             plus (m - 1) if m > 1.05 + 2.3 / sqrt(n)
+///     r = E[u·u'] / E[min(NIS, 18)]        0, and the part of m that stays, where r > c
+///     stays = r m / 2, plus (1/w - 1), at most 2.5, if w < 0.9 - c and r > 0.4 (1 - w)
+///     scale = 1 + (m (1 - r) - 1) (1 + 3/2 gain) if more than 1,
+///             else w, at least 0.1, if w < 0.9 - c and r < 0
 ///
-/// over the last n looks, about 500 at most. The first counts what does not show against what
-/// does, as errors that wander slowly show in part. Beyond these bounds, which chance seldom
-/// passes, each sets in over a tenth, with r over a twentieth.
-class PersistentErrors {
+/// over the last n looks, about 500 at most; chance seldom passes c = 2.3 / sqrt(n). Beyond its
+/// bound each sets in over a tenth, with r > 0.4 (1 - w) over a twentieth.
+///
+/// - Half of r m: the difference of two radars' offsets shows, their mean does not.
+/// - (1/w - 1) is of innovations that are smaller than the errors, which do not show. It counts
+///   what does not show against what does, as errors that wander slowly show in part.
+/// - Where a plot has a large weight `gain`, innovations are also of alterations of the course.
+class LearnedErrors {
  public:
   /// Takes the NIS of a plot of a track, and the product of its innovation and the one before.
   void learn(double nis, double product) noexcept {
@@ -42,16 +44,19 @@ class PersistentErrors {
     looks_ = kMemory * looks_ + 1.0;
   }
 
-  /// The part of the covariance of an innovation.
-  [[nodiscard]] double share() const noexcept {
-    constexpr double kMostHidden = 2.5, kMostShare = 9.0;
-    const double chance = 2.3 / std::sqrt(looks_);
-    const double usual = looks_ / usual_ - 1.0, all = all_ / looks_;
-    const double alike = products_ / (2.0 * all_) - 0.4 * (1.0 - usual);
-    const double fewer = std::min(1.0 / usual - 1.0, kMostHidden) * beyond(0.9 - chance - usual) *
-                         beyond(2.0 * alike);
-    const double more = (all - 1.0) * beyond(all - 1.05 - chance);
-    return std::min(fewer + more, kMostShare);
+  /// Errors that stay, as a part of the covariance of an innovation.
+  [[nodiscard]] double stays() const noexcept {
+    constexpr double kMostHidden = 2.5;
+    const double hidden = beyond(2.0 * (alike() - 0.4 * (1.0 - usual()))) * fewer();
+    return 0.5 * alike_shown() * all() + hidden * std::min(1.0 / usual() - 1.0, kMostHidden);
+  }
+
+  /// The factor on the covariance of an estimate, of which a plot has the weight `gain`.
+  [[nodiscard]] double scale(double gain) const noexcept {
+    const double more = all() * (1.0 - alike_shown()) - 1.0;
+    if (more > 0.0) return 1.0 + more * (1.0 + 1.5 * std::min(gain, 1.0));
+    constexpr double kLeast = 0.1;
+    return std::max(1.0 - (1.0 - usual()) * fewer() * (1.0 - beyond(alike())), kLeast);
   }
 
   void archive(Archive& fields) {
@@ -63,6 +68,15 @@ class PersistentErrors {
 
  private:
   static double beyond(double excess) noexcept { return std::clamp(10.0 * excess, 0.0, 1.0); }
+
+  [[nodiscard]] double usual() const noexcept { return looks_ / usual_ - 1.0; }
+  [[nodiscard]] double all() const noexcept { return all_ / looks_; }
+  [[nodiscard]] double alike() const noexcept { return products_ / (2.0 * all_); }
+  [[nodiscard]] double chance() const noexcept { return 2.3 / std::sqrt(looks_); }
+  [[nodiscard]] double fewer() const noexcept { return beyond(0.9 - chance() - usual()); }
+  [[nodiscard]] double alike_shown() const noexcept {
+    return std::max(alike(), 0.0) * beyond(alike() - chance());
+  }
 
   static constexpr double kPriorLooks = 8.0;
   static constexpr double kMemory = 0.998;
@@ -84,7 +98,7 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
   return 0.75 * s2 * s2 * from_antenna * from_antenna.transpose();
 }
 
-/// The belief of a track as it is reported. The estimator does without all three:
+/// The belief of a track as it is reported. The estimator does without all four:
 ///
 /// - Noise and outliers are allowances. Where a plot has a small weight `gain`, the target has held
 ///   its course for as long as the filter remembers, and neither came: the position errs by two
@@ -93,18 +107,20 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
 ///   older than eight scans count, (1 - gain)⁸, and the first of its `hits` plots no longer do: a
 ///   line through n plots has the gain 4/n with neither noise nor outliers. Of a belief ahead of
 ///   the track, whose own position has the variance `estimate_m2`, what the way adds stays.
+/// - The errors of the radar are not as stated: the same variance has the factor `scale`.
 /// - An alteration that does not show yet: of the course by `kUnseenCourse_rad`, of the speed by
 ///   `kUnseenSpeed` of it.
 /// - The errors of the position that stay from scan to scan.
 inline Gaussian<4> reported(Gaussian<4> kinematics, double estimate_m2, double gain, int hits,
-                            const Mat<double, 2, 2>& stays_m2) noexcept {
+                            double scale, const Mat<double, 2, 2>& stays_m2) noexcept {
   constexpr double kUnseenCourse_rad = 0.06, kUnseenSpeed = 0.02;
   const double of_a_line = std::min(4.0 / (hits * gain), 1.0);
   const double held = std::pow(std::max(1.0 - gain, 0.0), 8) * (1.0 - std::pow(of_a_line, 8));
   const double now_m2 = (kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2;
-  const double errs = std::sqrt(1.0 - held / 3.0 * std::min(estimate_m2 / now_m2, 1.0));
-  const Vec<double, 4> scale(errs, 1.0, errs, 1.0);
-  kinematics.covariance = scale.asDiagonal() * kinematics.covariance * scale.asDiagonal();
+  const double more = (1.0 - held / 3.0) * scale - 1.0;
+  const double errs = std::sqrt(1.0 + more * std::min(estimate_m2 / now_m2, 1.0));
+  const Vec<double, 4> factor(errs, 1.0, errs, 1.0);
+  kinematics.covariance = factor.asDiagonal() * kinematics.covariance * factor.asDiagonal();
   const Vec<double, 2> velocity_mps(kinematics.mean[1], kinematics.mean[3]);
   const Vec<double, 2> ahead_mps = kUnseenSpeed * velocity_mps;
   const Vec<double, 2> abeam_mps =

@@ -639,22 +639,26 @@ class ScanStages {
     track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
   }
 
-  /// Notes what stays of the errors of its most probable plot, and learns from it.
+  /// Learns from the errors of its most probable plot, and notes what the track's are by them.
   void note_errors(Track& track, const AssociationProbabilities& probabilities) noexcept {
     if (probabilities.best < 0) return;
     const auto at = static_cast<std::size_t>(probabilities.best);
     const CandidatePlot& best = candidates_of(track)[at];
-    PersistentErrors& errors = state().persistent_errors;
+    LearnedErrors& errors = state().learned_errors;
     constexpr double kCertain = 0.7;
     if (is_sure(track) && probabilities.of_candidate[at] > kCertain)
       errors.learn(track.nis, look_at(track).product);
     const ConvertedErrors& of_plot = state().plots[best.plot].errors;
     const Vec<double, 2> antenna_m(of_plot.antenna_north_m, of_plot.antenna_east_m);
     const Mat<double, 2, 2> position_m2 = position_in(track.kinematics).covariance;
+    track.stays_m2 = bent_m2(track.position() - antenna_m, position_m2);
+    track.errors_scale = 1.0;
     // Where errors are said to be correlated, plots have counted for less already.
-    const double share = state().radar.correlation_time_s > 0.0 ? 0.0 : errors.share();
-    track.stays_m2 =
-        share * (best.nominal_r + position_m2) + bent_m2(track.position() - antenna_m, position_m2);
+    if (state().radar.correlation_time_s > 0.0) return;
+    track.stays_m2 += errors.stays() * (best.nominal_r + position_m2);
+    track.errors_scale = errors.scale(position_m2.trace() / best.nominal_r.trace());
+    // This radar alone does not make better what other sensors see, too.
+    if (track.time_s < track.seen_until_s) track.errors_scale = std::max(track.errors_scale, 1.0);
   }
 
   void confirm_and_delete() noexcept {

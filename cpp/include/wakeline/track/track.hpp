@@ -191,6 +191,7 @@ struct Track {
   std::uint32_t history = 0;   ///< bit k: seen k scans ago
   int duplicate_scans = 0;     ///< in a row that a senior track was on the same target
   double plot_m2 = 0.0;        ///< variance of its last plot, per axis (mean of both)
+  double errors_scale = 1.0;   ///< of its variance, as the errors of the radar are not as stated
   Mat<double, 2, 2> stays_m2 = Mat<double, 2, 2>::Zero();  ///< errors of the position that stay
   double looked_s = 0.0;  ///< when a radar last looked: a plot or a miss
   double seen_until_s = -std::numeric_limits<double>::infinity();
@@ -261,6 +262,7 @@ struct Track {
     fields(history);
     fields(duplicate_scans);
     fields(plot_m2);
+    fields(errors_scale);
     fields(stays_m2);
     fields(looked_s);
     fields(seen_until_s);

@@ -185,7 +185,7 @@ template <class Estimator, class Steps>
 Gaussian<4> Tracker<Estimator, Steps>::kinematics_at(const Track& track,
                                                      double time_s) const noexcept {
   return reported(parts_->picture.belief_at(track, time_s), track.position_variance_m2(),
-                  track.gain(), track.hits, track.stays_m2);
+                  track.gain(), track.hits, track.errors_scale, track.stays_m2);
 }
 
 template <class Estimator, class Steps>
