@@ -41,7 +41,7 @@ struct TrackerConfig {
 
   // Start
   double birth_density_per_m2 = 3e-10;
-  double free_plot = 0.7;
+  double free_plot = 0.75;
   double start_gate_sigma = 3.0;
   double start_speed_factor = 0.5;
 
