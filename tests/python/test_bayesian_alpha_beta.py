@@ -26,7 +26,7 @@ def test_innovations_are_positions_minus_predicted_ones(sensor):
     for z in readings(12):
         bank.predict(DT_S)
         ahead = bank.estimate().mean[[0, 2]]
-        place = wl.one_point(sensor, z, 1.0).mean[[0, 2]]
+        place = sensor.position(z).mean
         np.testing.assert_allclose(bank.update(sensor, z).innovation, place - ahead, atol=1e-9)
 
 

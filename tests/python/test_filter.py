@@ -137,11 +137,10 @@ def test_smoothing_without_noise_is_one_straight_line():
 def test_two_point_start_is_the_line_through_both():
     first, second = [3000.0, 0.3], [3050.0, 0.31]
     belief = wl.two_point(RADAR, first, second, 2.0)
+    as_read = [r * np.array([np.cos(b), np.sin(b)]) for r, b in (first, second)]
+    np.testing.assert_allclose(belief.mean[[0, 2]], as_read[1])
+    np.testing.assert_allclose(belief.mean[[1, 3]], (as_read[1] - as_read[0]) / 2.0, atol=1e-9)
     places = [RADAR.position(z) for z in (first, second)]
-    np.testing.assert_allclose(belief.mean[[0, 2]], places[1].mean)
-    np.testing.assert_allclose(
-        belief.mean[[1, 3]], (places[1].mean - places[0].mean) / 2.0, atol=1e-9
-    )
     velocity_covariance = belief.covariance[np.ix_([1, 3], [1, 3])]
     np.testing.assert_allclose(
         velocity_covariance, (places[0].covariance + places[1].covariance) / 4.0, rtol=1e-9

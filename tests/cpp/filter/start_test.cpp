@@ -10,6 +10,7 @@
 #include "wakeline/filter/ekf.hpp"
 #include "wakeline/filter/ukf.hpp"
 #include "wakeline/measurement/range_bearing.hpp"
+#include "wakeline/measurement/range_bearing_doppler.hpp"
 #include "wakeline/motion/constant_acceleration.hpp"
 #include "wakeline/motion/coordinated_turn.hpp"
 
@@ -60,6 +61,27 @@ TEST(Starts, TakeNumbersOfAnyKindForSpeedsAndSteps) {
       matrices_identical(two_point(fix, fix, 3).covariance, two_point(radar, z, z, 3).covariance));
 }
 
+// A plot is right on average for one target when it is too far out by r sb²/2, and a target about
+// one plot is too near by as much. A start between both has its range right.
+TEST(Starts, AreAtTheRangeAsRead) {
+  const OwnShip own{.north_m = 500, .east_m = -300};
+  const double bearing_rad = 0.3, range_m = 30e3;
+  const Vec<double, 2> z(range_m, bearing_rad);
+  const auto expect_as_read = [&](const auto& sensor, const auto& reading) {
+    const Gaussian<4> belief = one_point(sensor, reading, 10.0);
+    EXPECT_TRUE(matrices_near(Vec<double, 2>(belief.mean[0], belief.mean[2]),
+                              (own.position<double>() + range_m * towards(bearing_rad)).eval(),
+                              {.absolute = 1e-6}));
+    EXPECT_EQ(belief.covariance(0, 0), sensor.position(reading).covariance(0, 0));
+  };
+  expect_as_read(RangeBearing{.bearing_std_rad = deg(3), .own = own}, z);
+  expect_as_read(ConvertedRangeBearing{.bearing_std_rad = deg(3), .own = own}, z);
+  expect_as_read(ConvertedRangeBearing{.bearing_std_rad = deg(3), .unbiased = false, .own = own},
+                 z);
+  expect_as_read(RangeBearingDoppler{.bearing_std_rad = deg(3), .own = own},
+                 Vec<double, 3>(range_m, bearing_rad, 0.0));
+}
+
 TEST(TwoPoint, IsTheFormulaOfTwoFixes) {
   Draw draw(22);
   const Gaussian<2> first{draw.normals<2>(), draw.definite<2>()},
@@ -90,7 +112,8 @@ TEST(TwoPoint, OwnShipWasElsewhereAtTheFirstPlot) {
   const Vec<double, 2> first =
       earlier.measure(Vec<double, 2>(truth[0] - dt * truth[1], truth[2] - dt * truth[3]));
   const Gaussian<4> belief = two_point(radar, first, second, dt);
-  const Gaussian<4> wanted = two_point(earlier.position(first), radar.position(second), dt);
+  const Gaussian<4> wanted =
+      two_point(earlier.start_position(first), radar.start_position(second), dt);
   EXPECT_TRUE(matrices_near(belief.mean, wanted.mean, {.absolute = 1e-9}));
   EXPECT_TRUE(matrices_near(belief.covariance, wanted.covariance));
   EXPECT_NEAR(belief.mean[1], truth[1], 0.5);
@@ -143,7 +166,7 @@ TEST(OnePoint, IsThePlotAtRest) {
   const RangeBearing radar{.range_std_m = 20, .bearing_std_rad = deg(1), .own = {.north_m = 100}};
   const Vec<double, 2> z(1000, 0.5);
   const Gaussian<4> belief = one_point(radar, z, 7.0);
-  const Gaussian<2> fix = radar.position(z);
+  const Gaussian<2> fix = radar.start_position(z);
   EXPECT_TRUE(matrices_near(belief.mean, Vec<double, 4>(fix.mean[0], 0, fix.mean[1], 0), {0, 0}));
   EXPECT_EQ(belief.covariance(0, 2), fix.covariance(0, 1));
   EXPECT_EQ(belief.covariance(1, 1), 49.0);

@@ -65,6 +65,15 @@ class AnySensorOf {
                       sensor_);
   }
 
+  template <class Scalar>
+  Gaussian<2, Scalar> start_position(const Vec<Scalar, M>& z) const noexcept {
+    return std::visit(
+        [&](const auto& sensor) -> Gaussian<2, Scalar> {
+          return wakeline::start_position(sensor, z);
+        },
+        sensor_);
+  }
+
   template <class Function>
   decltype(auto) visit_model(Function&& function) const noexcept {
     return std::visit(

@@ -36,7 +36,7 @@ Gaussian<4, Scalar> one_point(const Sensor& sensor, const Vec<Scalar, Sensor::kM
                               std::type_identity_t<Scalar> speed_std_mps) noexcept {
   const Gaussian<2, Scalar> velocity{Vec<Scalar, 2>::Zero(),
                                      speed_std_mps * speed_std_mps * Mat<Scalar, 2, 2>::Identity()};
-  return kinematics_from<Scalar>(sensor.position(z), velocity, Mat<Scalar, 2, 2>::Zero());
+  return kinematics_from<Scalar>(start_position(sensor, z), velocity, Mat<Scalar, 2, 2>::Zero());
 }
 
 /// Two-point start from two positions dt apart: the second one and their difference over dt, with
@@ -55,10 +55,10 @@ template <PositionSensor Sensor, class Scalar>
 Gaussian<4, Scalar> two_point(const Sensor& sensor, const Vec<Scalar, Sensor::kMeasurements>& first,
                               const Vec<Scalar, Sensor::kMeasurements>& second,
                               std::type_identity_t<Scalar> dt_s) noexcept {
-  Gaussian<2, Scalar> before = sensor.position(first);
+  Gaussian<2, Scalar> before = start_position(sensor, first);
   if (const OwnShip* own = own_ship_of(sensor))
     before.mean -= dt_s * own->template velocity<Scalar>();
-  return two_point<Scalar>(before, sensor.position(second), dt_s);
+  return two_point<Scalar>(before, start_position(sensor, second), dt_s);
 }
 
 /// Extends a belief over `[x, vx, y, vy]` to the state of `motion`: the other components start with

@@ -85,6 +85,18 @@ concept PositionSensor = requires(const Sensor& sensor,
   { sensor.position(z) } -> std::convertible_to<Gaussian<2>>;
 };
 
+/// The position from which a reading starts an estimate: `start_position(z)` of a sensor that has
+/// it, else `position(z)`. They differ where lines of sight are bent: a converted plot is right on
+/// average for one target, a start for all targets that give the plot.
+template <PositionSensor Sensor, class Scalar>
+Gaussian<2, Scalar> start_position(const Sensor& sensor,
+                                   const Vec<Scalar, Sensor::kMeasurements>& z) noexcept {
+  if constexpr (requires { sensor.start_position(z); })
+    return sensor.start_position(z);
+  else
+    return sensor.position(z);
+}
+
 /// A sensor chosen at run time, whose measurement model `visit_model` gives.
 template <class Sensor>
 concept SensorVariant = requires(const Sensor& sensor) {

@@ -120,9 +120,10 @@ struct ConvertedErrors {
   double antenna_east_m = 0.0;
 
   /// The plot as read (north/east) beside the prediction of its target: with its covariance there,
-  /// and moved outwards by r s²/2, because a target with the standard deviation s of its direction
-  /// is on average so much less far along the line of sight. As read where s > 2 sb: then the plot
-  /// knows the direction better than the prediction.
+  /// and moved outwards by r s²/2, with the standard deviation s of the direction after the update,
+  /// s² = p sb² / (p + sb²) for the variance p of the predicted one, because the target is on
+  /// average so much less far along the line of sight. Where p > 4 sb² the plot knows the direction
+  /// better: with the covariance as read, at the range as read (`PolarErrors::start_position`).
   template <class Scalar>
   [[gnu::always_inline]] Gaussian<2, Scalar> at(const Gaussian<2, Scalar>& reading,
                                                 const Gaussian<2, Scalar>& target) const noexcept {
@@ -140,7 +141,9 @@ struct ConvertedErrors {
     const Scalar across_m4 = x * x * p(1, 1) + y * y * p(0, 0) - Scalar(2) * x * y * p(1, 0);
     const Scalar distance2 = x * x + y * y;
     const auto known = across_m4 <= Scalar(kVague * spread) * distance2 * distance2;
-    const Scalar outwards = select(known, Scalar(0.5) * across_m4 * inverse * inverse, Scalar(0));
+    const Scalar outwards =
+        Scalar(0.5 * spread) * across_m4 * reciprocal(across_m4 + Scalar(spread) * square * square);
+    const Scalar inwards = Scalar(1.0 / std::sqrt(1.0 + spread) - 1.0);
     Scalar nn = isotropic + along * xx, ne = along * xy, ee = isotropic + along * yy;
     if (range_bearing_m != 0.0) {
       const Scalar common = Scalar(range_bearing_m) * inverse_sqrt(square);
@@ -150,7 +153,10 @@ struct ConvertedErrors {
     }
     const Mat<Scalar, 2, 2>& r = reading.covariance;
     Gaussian<2, Scalar> plot;
-    plot.mean << reading.mean[0] + outwards * x, reading.mean[1] + outwards * y;
+    const Scalar read_x = reading.mean[0] - Scalar(antenna_north_m);
+    const Scalar read_y = reading.mean[1] - Scalar(antenna_east_m);
+    plot.mean << reading.mean[0] + select(known, outwards * x, inwards * read_x),
+        reading.mean[1] + select(known, outwards * y, inwards * read_y);
     plot.covariance(0, 0) = select(known, nn, r(0, 0));
     plot.covariance(1, 1) = select(known, ee, r(1, 1));
     plot.covariance(1, 0) = plot.covariance(0, 1) = select(known, ne, r(1, 0));
@@ -238,6 +244,17 @@ struct PolarErrors {
     fix.mean += own.position<Scalar>();
     fix.covariance.diagonal().array() += Scalar(isotropic_variance_m2());
     return fix;
+  }
+
+  /// The same for an estimate that starts with the plot: at the range as read, r exp(-sb²/2) (the
+  /// mean of a target about the plot) moved outwards by r sb²/2 as `ConvertedErrors::at` does.
+  template <class Scalar>
+  Gaussian<2, Scalar> start_position(Scalar range_m, Scalar bearing_rad,
+                                     bool unbiased) const noexcept {
+    Gaussian<2, Scalar> start = position(range_m, bearing_rad, unbiased);
+    start.mean = own.position<Scalar>() +
+                 range_m * towards(Scalar(bearing_rad - Scalar(bearing_offset_rad)));
+    return start;
   }
 };
 

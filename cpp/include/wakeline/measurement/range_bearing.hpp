@@ -109,10 +109,16 @@ struct RangeBearing {
            at_least(z[0], Scalar(range_std_m)) * towards(Scalar(z[1] - Scalar(bearing_offset_rad)));
   }
 
-  /// The plot in north/east, for starts and gates.
+  /// The plot in north/east, for gates.
   template <class Scalar>
   Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
     return errors().position(z[0], z[1], true);
+  }
+
+  /// The same for a start.
+  template <class Scalar>
+  Gaussian<2, Scalar> start_position(const Vec<Scalar, 2>& z) const noexcept {
+    return errors().start_position(z[0], z[1], true);
   }
 
   void validate() const { validate_fields(*this); }
@@ -183,6 +189,12 @@ struct ConvertedRangeBearing {
   template <class Scalar>
   Gaussian<2, Scalar> position(const Vec<Scalar, 2>& z) const noexcept {
     return observe(z);
+  }
+
+  /// The plot in north/east for a start.
+  template <class Scalar>
+  Gaussian<2, Scalar> start_position(const Vec<Scalar, 2>& z) const noexcept {
+    return errors().start_position(z[0], z[1], unbiased);
   }
 
   void validate() const { validate_fields(*this); }

@@ -100,6 +100,11 @@ struct RangeBearingDoppler {
     return range_bearing().errors().position(z[0], z[1], true);
   }
 
+  template <class Scalar>
+  Gaussian<2, Scalar> start_position(const Vec<Scalar, 3>& z) const noexcept {
+    return range_bearing().errors().start_position(z[0], z[1], true);
+  }
+
   void validate() const { validate_fields(*this); }
 
  private:
