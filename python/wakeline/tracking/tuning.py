@@ -460,14 +460,18 @@ def _maximized(
         curvature = np.maximum(np.abs(curvature), 1.0)
         step = axes @ ((axes.T @ gradient) / curvature)
         step *= min(1.0, _LARGEST_STEP / max(np.abs(step).max(), 1e-300))
-        for shrink in 0.5 ** np.arange(6):
-            trial = np.clip(u + shrink * step, low, high)
-            if (value := of(trial)) > best:
+        steps = 0.5 ** np.arange(6)[:, np.newaxis] * step
+        arms = _STEP / 2 * np.vstack([np.eye(len(u)), -np.eye(len(u))])
+        for way in (steps, arms):  # a parameter alone where Newton's method gains nothing
+            for trial in np.clip(u + way, low, high):
+                if (value := of(trial)) > best + (_ENOUGH if way is arms else 0.0):
+                    break
+            else:
+                continue
+            gain, u, best = value - best, trial, value
+            if gain >= _ENOUGH:
                 break
         else:
-            return u
-        gain, u, best = value - best, trial, value
-        if gain < _ENOUGH:
             break
     return u
 
