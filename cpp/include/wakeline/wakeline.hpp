@@ -146,6 +146,7 @@
 #include "wakeline/track/calibration.hpp"
 #include "wakeline/track/clutter_density.hpp"
 #include "wakeline/track/clutter_map.hpp"
+#include "wakeline/track/clutter_patches.hpp"
 #include "wakeline/track/clutter_rings.hpp"
 #include "wakeline/track/compiled.hpp"
 #include "wakeline/track/config.hpp"

@@ -29,7 +29,7 @@ TEST(ClutterDensity, RisesWhereClutterIsLearnedAndOnlyThere) {
     clutter.evaluate(plots, scan > 0 ? 2.5 : 0.0, 2.5);
     EXPECT_EQ(clutter.without({}, plots, 1), 1e-7) << "what a track owns is not learned";
     EXPECT_TRUE(scan == 0 || clutter.without({}, plots, 0) > 1e-7);
-    clutter.learn(plots, clutter_probability, [](int) { return -1; }, {}, {});
+    clutter.learn(plots, clutter_probability, clutter_probability, [](int) { return -1; }, {}, {});
   }
 }
 
@@ -47,7 +47,7 @@ TEST(ClutterDensity, OfATrackLeavesOutItsOwnPlots) {
           << "all that was learned is its own";
     }
     clutter.learn(
-        plots, clutter_probability, [](int) { return 0; }, looks, slots);
+        plots, clutter_probability, clutter_probability, [](int) { return 0; }, looks, slots);
   }
 }
 
@@ -57,7 +57,7 @@ TEST(ClutterDensity, IsThatOfTheRangeWhereItIsLarger) {
   for (int k = 0; k < 100; ++k) plots.push_back({0.0, 3000.0, deg(3.6 * k), {}});
   const ScanPlots scan = scan_of(plots, 0.0);
   clutter.evaluate(scan, 0.0, 2.5);
-  clutter.learn_rings(scan, std::vector<double>(100, 1.0), 0.0, 1.0);
+  clutter.learn_free(scan, std::vector<double>(100, 1.0), 0.0, 1.0);
   for (const int plot : {0, 50}) EXPECT_GT(clutter.without({}, scan, plot), 2e-6);
 }
 

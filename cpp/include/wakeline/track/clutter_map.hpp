@@ -54,6 +54,17 @@ struct LearnedPlots {
   }
 };
 
+/// What a target's own plots have added to the density of clutter.
+struct OwnPlots {
+  LearnedPlots of_map;
+  LearnedPlots of_patches;
+
+  void archive(Archive& fields) {
+    of_map.archive(fields);
+    of_patches.archive(fields);
+  }
+};
+
 /// The density of false plots over the plane, learned with a fading memory. Fixed echoes and shore
 /// grow dense and thus stop looking like targets.
 ///
@@ -61,13 +72,16 @@ struct LearnedPlots {
 /// same place in the table the weaker is forgotten.
 class ClutterMap {
  public:
-  /// `cell_m` 0 switches the map off.
-  ClutterMap(double cell_m, double memory_s)
+  static constexpr std::size_t kMostCells = 1 << 14;
+
+  /// `cell_m` 0 switches the map off. It has room for so many cells, a power of two.
+  ClutterMap(double cell_m, double memory_s, std::size_t cells = kMostCells)
       : cell_m_(cell_m), memory_s_(memory_s), fading_(memory_s) {
-    if (enabled()) cells_.resize(kCells);
+    if (enabled()) cells_.resize(std::min(cells, kMostCells));
   }
 
   [[nodiscard]] bool enabled() const noexcept { return cell_m_ > 0.0; }
+  [[nodiscard]] double cell_m() const noexcept { return cell_m_; }
 
   /// A time, or a later one at which no plot that was learned counts for much more than when it
   /// came.
@@ -96,6 +110,38 @@ class ClutterMap {
     const double shares = shared(cells_along(position[0]), cells_along(learned.position[0])) *
                           shared(cells_along(position[1]), cells_along(learned.position[1]));
     return per_m2_and_scan(shares * faded(learned, time_s), period_s);
+  }
+
+  /// The plots, as many as are left at `time_s`, in the four cells about a position.
+  [[nodiscard]] std::array<double, 4> plots_about(const Vec<double, 2>& position,
+                                                  double time_s) const noexcept {
+    std::array<double, 4> plots{};
+    if (!enabled()) return plots;
+    const double left = faded_at(time_s);
+    const std::array<Corner, 4> corner = corners(position);
+    for (std::size_t k = 0; k < corner.size(); ++k) {
+      const Cell& cell = cells_[place(corner[k])];
+      if (cell.north == corner[k].north && cell.east == corner[k].east)
+        plots[k] = cell.plots * left;
+    }
+    return plots;
+  }
+
+  /// As many of them as these plots are.
+  [[nodiscard]] std::array<double, 4> plots_about(const LearnedPlots& learned,
+                                                  const Vec<double, 2>& position,
+                                                  double time_s) const noexcept {
+    std::array<double, 4> plots{};
+    const double left = enabled() ? faded(learned, time_s) : 0.0;
+    if (left == 0.0) return plots;
+    const auto share = [](double along, std::int32_t cell) {
+      return std::max(1.0 - std::abs(along - cell), 0.0);
+    };
+    const double north = cells_along(learned.position[0]), east = cells_along(learned.position[1]);
+    const std::array<Corner, 4> corner = corners(position);
+    for (std::size_t k = 0; k < corner.size(); ++k)
+      plots[k] = left * share(north, corner[k].north) * share(east, corner[k].east);
+    return plots;
   }
 
   /// Adds a plot that `add` learns to those of its target.
@@ -131,7 +177,6 @@ class ClutterMap {
   }
 
  private:
-  static constexpr std::size_t kCells = 1 << 14;
   static constexpr double kEpochs = 100.0;  ///< memories after which a new epoch begins
 
   struct Cell {
@@ -203,11 +248,11 @@ class ClutterMap {
              {i + 1, j + 1, a * b}}};
   }
 
-  static std::size_t place(const Corner& corner) noexcept {
+  [[nodiscard]] std::size_t place(const Corner& corner) const noexcept {
     const auto hash =
         static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.north)) * 0x9E3779B97F4A7C15u ^
         static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.east)) * 0xC2B2AE3D27D4EB4Fu;
-    return static_cast<std::size_t>(hash >> 50);
+    return static_cast<std::size_t>(hash >> 50) & (cells_.size() - 1);
   }
 
   double cell_m_;

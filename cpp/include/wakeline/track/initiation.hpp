@@ -132,9 +132,9 @@ class FreePlots {
 struct TrackStart {
   Gaussian<4> belief;  ///< `[x, vx, y, vy]`
   double time_s;
-  double beam_rad;       ///< angle of the beam at that time, unwrapped
-  double existence;      ///< probability
-  LearnedPlots learned;  ///< what the clutter map has learned of its plots
+  double beam_rad;   ///< angle of the beam at that time, unwrapped
+  double existence;  ///< probability
+  OwnPlots learned;  ///< what was learned as clutter of its plots
 };
 
 /// Two-point initiation: a free plot, and one of the two scans before that is near enough for the
@@ -168,14 +168,16 @@ class TrackInitiation {
       if (plots[k].waits || !(free > config_.free_plot)) continue;
       if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
-        const LearnedPlots own{earlier.position.mean, 1.0, earlier.time_s};
+        const LearnedPlots first{earlier.position.mean, 1.0, earlier.time_s};
+        const OwnPlots own{first, first};
         const double first_per_m2 = earlier.free * free * first_seen(earlier);
         const double probability = existence(radar, earlier, plots[k], first_per_m2,
                                              clutter.without(own, plots, k), detection_probability);
         if (!has_room(probability)) return;
         start(TrackStart{belief(radar, earlier, plots[k]), plots[k].time_s, plots[k].beam_rad,
                          probability,
-                         clutter.with(own, plots, k, ownership.clutter_probability()[at])});
+                         clutter.with(own, plots, k, ownership.clutter_probability(),
+                                      ownership.free_probability())});
       };
       before_.for_each_before(plots[k], radar.max_speed_mps, radar.period_s,
                               config_.start_gate_sigma, longest_s, pair);

@@ -19,7 +19,7 @@ struct Look {
   int misses = 0;           ///< of this radar, in a row
   Vec<double, 2> innovation = Vec<double, 2>::Zero();  ///< the last one, whitened
   double product = 0.0;                                ///< of the last two
-  LearnedPlots learned = {};  ///< what the clutter map has learned of the target's own plots
+  OwnPlots learned = {};  ///< what was learned as clutter of the target's own plots
 
   /// The beam has missed turns of that angle.
   void miss_turns(double missed_rad) noexcept {

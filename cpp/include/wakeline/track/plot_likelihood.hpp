@@ -37,8 +37,8 @@ class CandidatePlots {
   void clear() noexcept { count_ = 0; }
 
   /// Chooses the likeliest of a track's validated plots, each with the density of clutter about it,
-  /// where the clutter map has learned its own.
-  void choose(std::span<const ValidatedPlot> validated, const LearnedPlots& own,
+  /// without what was learned of its own.
+  void choose(std::span<const ValidatedPlot> validated, const OwnPlots& own,
               const ModePositions& modes, double outlier_probability, const ClutterDensity& clutter,
               const ScanPlots& plots) noexcept {
     clear();

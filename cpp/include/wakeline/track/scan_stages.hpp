@@ -100,11 +100,12 @@ class ScanStages {
     for (const int slot : touched_) picture_.number_confirmed(picture_.tracks.at(slot));
     state().clutter.learn(
         state().plots, state().ownership.clutter_probability(),
+        state().ownership.free_probability(),
         [&](int slot) { return state().ownership.plot_of(slot); }, state().looks, due_);
     initiate();
     report_room();
-    state().clutter.learn_rings(state().plots, state().ownership.free_probability(), dt_s,
-                                whole_turn_ ? 1.0 : dt_s / state().radar.period_s);
+    state().clutter.learn_free(state().plots, state().ownership.free_probability(), dt_s,
+                               whole_turn_ ? 1.0 : dt_s / state().radar.period_s);
 
     report_owners(std::min(plots.size(), static_cast<std::size_t>(picture_.config.max_plots)));
     state().ownership.drop_settled(state().plots);
