@@ -89,7 +89,7 @@ TEST(Duplicates, OfManyOnOneTargetOneStays) {
   for (int k = 1; k <= 6; ++k) open(tracks, -k, {double(k), 5.0, 0.0, 0.0});
   EXPECT_EQ(found(duplicates, tracks).size(), 5u);
   TrackList chain(10);  // each near the next only
-  for (int k = 1; k <= 3; ++k) open(chain, -k, {9.0 * k, 5.0, 0.0, 0.0});
+  for (int k = 1; k <= 3; ++k) open(chain, -k, {8.0 * k, 5.0, 0.0, 0.0});
   EXPECT_EQ(found(duplicates, chain), std::vector<int>{1});
 }
 

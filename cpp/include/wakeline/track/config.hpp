@@ -41,7 +41,7 @@ struct TrackerConfig {
 
   // Start
   double birth_density_per_m2 = 3e-10;
-  double free_plot = 0.67;
+  double free_plot = 0.75;
   double start_gate_sigma = 3.0;
   double start_speed_factor = 0.5;
 
@@ -62,7 +62,7 @@ struct TrackerConfig {
   double drop_speed_factor = 1.0;
 
   // Duplicates
-  double duplicate_distance = 0.5;
+  double duplicate_distance = 0.35;
   double vessel_length_m = 0.0;
   int duplicate_scans = 3;
 
@@ -85,7 +85,8 @@ struct TrackerConfig {
         field("outlier_scale", &C::outlier_scale, between(1, 1000), "1",
               "Standard deviation of an outlier over that of a usual plot."),
         field("clutter_cell_m", &C::clutter_cell_m, kCell, "m",
-              "Side of a cell of the clutter map; cells of patches are 3.5 times as wide; 0: neither."),
+              "Side of a cell of the clutter map; cells of patches are 3.5 times as wide; 0: "
+              "neither."),
         field("clutter_memory_s", &C::clutter_memory_s, kTime, "s",
               "Fading memory of the clutter map and of rings; that of patches is a third."),
         field("clutter_weight", &C::clutter_weight, between(0, 1000), "1",
