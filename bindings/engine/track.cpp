@@ -163,12 +163,12 @@ PyReport reported(const AnyTracker& tracker, std::size_t plots, const char* what
     const py::gil_scoped_release release;
     report = process();
   }
-  const bool too_late = tracker.has_window() && report.status == Status::kNegativeTimeStep;
-  if (report.status == Status::kNegativeTimeStep && !too_late)
+  if (report.status != Status::kNegativeTimeStep)
+    require_ok(report.status, what);
+  else if (!tracker.has_window())  // which counts what is too late
     throw FilterError(std::string(what) +
                       ": a step backwards: time_s must be at least that of the last scan of this "
                       "radar, at most a period before that of another one, and sectors clockwise");
-  if (!too_late) require_ok(report.status, what);
   PyReport result{py::array_t<std::int64_t>(static_cast<py::ssize_t>(plots)),
                   {report.events.begin(), report.events.end()},
                   report.rejected_plots};

@@ -50,10 +50,15 @@ class ClutterPatches {
                                double of_range_per_m2) const noexcept {
     if (!map_.enabled() || plots[plot].range_m < map_.cell_m()) return of_range_per_m2;
     const std::array<double, 4>& about = about_[static_cast<std::size_t>(plot)];
+    const auto of_cell_per_m2 = [&](double free_plots) {
+      return (free_plots + more_) / (area_m2_ + more_ / of_range_per_m2);
+    };
+    if (of_cell_per_m2(*std::max_element(about.begin(), about.end())) <= of_range_per_m2)
+      return of_range_per_m2;
     const std::array<double, 4> of_own = map_.plots_about(own, plots[plot].position.mean, time_s_);
     double most = 0.0;
     for (std::size_t k = 0; k < about.size(); ++k) most = std::max(most, about[k] - of_own[k]);
-    return std::max((most + more_) / (area_m2_ + more_ / of_range_per_m2), of_range_per_m2);
+    return std::max(of_cell_per_m2(most), of_range_per_m2);
   }
 
   /// Learns each plot that does not wait, of so many turns of the antenna, which ended `dt_s` after
