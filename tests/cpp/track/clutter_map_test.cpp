@@ -15,6 +15,7 @@ using Place = Vec<double, 2>;
 constexpr double kCell = 100.0;
 constexpr double kMemory = 60.0;
 constexpr double kPeriod = 2.5;
+constexpr double kRounding = 2e-7;  // of a float
 
 /// The integral of the density over the plane (m²), as a sum on a fine grid about a place.
 double total(const ClutterMap& map, const Place& about, double time_s) {
@@ -41,8 +42,8 @@ TEST(ClutterMap, SharesAPlotBilinearly) {
   map.add({75.0, 50.0}, 0.0, 1.0);  // a quarter of a cell north of a centre
   const double near = map.density({50.0, 50.0}, 0.0, kPeriod);
   EXPECT_GT(near, 0.0);
-  EXPECT_NEAR(map.density({150.0, 50.0}, 0.0, kPeriod) / near, 1.0 / 3.0, 1e-12);
-  EXPECT_NEAR(map.density({100.0, 50.0}, 0.0, kPeriod) / near, 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(map.density({150.0, 50.0}, 0.0, kPeriod) / near, 1.0 / 3.0, kRounding);
+  EXPECT_NEAR(map.density({100.0, 50.0}, 0.0, kPeriod) / near, 2.0 / 3.0, kRounding);
   EXPECT_EQ(map.density({250.0, 50.0}, 0.0, kPeriod), 0.0);
   EXPECT_EQ(map.density({50.0, 150.0}, 0.0, kPeriod), 0.0);
 }
@@ -59,7 +60,7 @@ TEST(ClutterMap, KnowsThePartOfATargetsOwnPlots) {
     for (double off_m = -250.0; off_m <= 250.0; off_m += 12.5) {
       const Place position = place + Place(off_m, 30.0 - off_m / 2);
       const double density = map.density(position, 40.0, kPeriod);
-      EXPECT_NEAR(map.density_of(learned, position, 40.0, kPeriod), density, 1e-12 * density);
+      EXPECT_NEAR(map.density_of(learned, position, 40.0, kPeriod), density, kRounding * density);
     }
     EXPECT_GT(map.density_of(learned, place, 40.0, kPeriod), 0.0);
   }
@@ -101,7 +102,7 @@ TEST(ClutterMap, NoPlotCountsForMuchMoreThanWhenItCame) {
     const double before_s = map.no_sooner_s(97.5);
     const double before = map.density({50.0, 50.0}, before_s, kPeriod);
     EXPECT_LE(before, 1.2 * when_it_came);
-    EXPECT_NEAR(map.density_of(learned, {50.0, 50.0}, before_s, kPeriod), before, 1e-12 * before);
+    EXPECT_NEAR(map.density_of(learned, {50.0, 50.0}, before_s, kPeriod), before, kRounding * before);
   }
 }
 
@@ -109,7 +110,7 @@ TEST(ClutterMap, FadesWithItsMemory) {
   ClutterMap map(kCell, kMemory);
   map.add({50.0, 50.0}, 10.0, 1.0);
   const double fresh = map.density({50.0, 50.0}, 10.0, kPeriod);
-  EXPECT_NEAR(map.density({50.0, 50.0}, 10.0 + kMemory, kPeriod) / fresh, std::exp(-1.0), 1e-12);
+  EXPECT_NEAR(map.density({50.0, 50.0}, 10.0 + kMemory, kPeriod) / fresh, std::exp(-1.0), kRounding);
   EXPECT_LT(map.density({50.0, 50.0}, 10.0 + 100 * kMemory, kPeriod), 1e-40);
 }
 
@@ -117,7 +118,7 @@ TEST(ClutterMap, APlotInEveryScanIsADensityOfOnePerCell) {
   ClutterMap map(kCell, kMemory);
   double time_s = 0.0;
   for (int k = 0; k < 1000; ++k) map.add({150.0, -250.0}, time_s += kPeriod, 1.0);
-  EXPECT_NEAR(map.density({150.0, -250.0}, time_s, kPeriod) * kCell * kCell, 1.0, 1e-9);
+  EXPECT_NEAR(map.density({150.0, -250.0}, time_s, kPeriod) * kCell * kCell, 1.0, 1e3 * kRounding);
 }
 
 TEST(ClutterMap, IsOffWithoutACell) {

@@ -68,16 +68,17 @@ struct OwnPlots {
 /// The density of false plots over the plane, learned with a fading memory. Fixed echoes and shore
 /// grow dense and thus stop looking like targets.
 ///
-/// A grid of cells, bilinear between their centres, in a table of fixed size; of two cells with the
-/// same place in the table the weaker is forgotten.
+/// A grid of cells, bilinear between their centres, in tiles of four, which share a line of the
+/// cache. The table of tiles has a fixed size; of two with the same place in it the weaker is
+/// forgotten.
 class ClutterMap {
  public:
-  static constexpr std::size_t kMostCells = 1 << 14;
+  static constexpr std::size_t kMostTiles = 1 << 13;
 
-  /// `cell_m` 0 switches the map off. It has room for so many cells, a power of two.
-  ClutterMap(double cell_m, double memory_s, std::size_t cells = kMostCells)
+  /// `cell_m` 0 switches the map off. It has room for so many tiles, a power of two.
+  ClutterMap(double cell_m, double memory_s, std::size_t tiles = kMostTiles)
       : cell_m_(cell_m), memory_s_(memory_s), fading_(memory_s) {
-    if (enabled()) cells_.resize(std::min(cells, kMostCells));
+    if (enabled()) tiles_.resize(std::min(tiles, kMostTiles));
   }
 
   [[nodiscard]] bool enabled() const noexcept { return cell_m_ > 0.0; }
@@ -95,11 +96,7 @@ class ClutterMap {
                                double period_s) const noexcept {
     if (!enabled()) return 0.0;
     double plots = 0.0;
-    for (const Corner& corner : corners(position)) {
-      const Cell& cell = cells_[place(corner)];
-      if (cell.north == corner.north && cell.east == corner.east)
-        plots += corner.share * cell.plots;
-    }
+    for (const Corner& corner : corners(position)) plots += corner.share * plots_in(corner);
     return per_m2_and_scan(plots > 0.0 ? plots * faded_at(time_s) : 0.0, period_s);
   }
 
@@ -119,11 +116,7 @@ class ClutterMap {
     if (!enabled()) return plots;
     const double left = faded_at(time_s);
     const std::array<Corner, 4> corner = corners(position);
-    for (std::size_t k = 0; k < corner.size(); ++k) {
-      const Cell& cell = cells_[place(corner[k])];
-      if (cell.north == corner[k].north && cell.east == corner[k].east)
-        plots[k] = cell.plots * left;
-    }
+    for (std::size_t k = 0; k < corner.size(); ++k) plots[k] = plots_in(corner[k]) * left;
     return plots;
   }
 
@@ -157,38 +150,56 @@ class ClutterMap {
     latest_s_ = std::max(latest_s_, time_s);
     const double of_epoch = weight / faded_at(time_s);
     for (const Corner& corner : corners(position)) {
-      Cell& cell = cells_[place(corner)];
-      const bool same = cell.north == corner.north && cell.east == corner.east;
-      const double added = of_epoch * corner.share;
-      if (!same && cell.plots > added) continue;
-      cell = {corner.north, corner.east, (same ? cell.plots : 0.0) + added};
+      Tile& tile = tiles_[place(corner)];
+      const auto added = static_cast<float>(of_epoch * corner.share);
+      if (!tile.has(corner)) {
+        if (*std::max_element(tile.plots.begin(), tile.plots.end()) > added) continue;
+        tile = {{}, corner.north >> 1, corner.east >> 1};
+      }
+      tile.plots[cell_of(corner)] += added;
     }
   }
 
   /// Saves or restores what has been learned.
   void archive(Archive& fields) {
-    const std::size_t size = cells_.size();
-    fields(cells_, size);
+    const std::size_t size = tiles_.size();
+    fields(tiles_, size);
     fields(epoch_s_);
     fields(latest_s_);
-    if (cells_.size() == size) return;
-    cells_.resize(size);
+    if (tiles_.size() == size) return;
+    tiles_.resize(size);
     fields.fail();
   }
 
  private:
-  static constexpr double kEpochs = 100.0;  ///< memories after which a new epoch begins
+  static constexpr double kEpochs = 50.0;  ///< memories after which a new epoch begins
 
-  struct Cell {
-    std::int32_t north = 0;
-    std::int32_t east = 0;
-    double plots = 0.0;  ///< as many as would fade from the epoch on to what is left of them
-  };
   struct Corner {
     std::int32_t north;
     std::int32_t east;
     double share;
   };
+  /// Two cells by two.
+  struct alignas(32) Tile {
+    std::array<float, 4> plots = {};  ///< as many as would fade from the epoch on to what is left
+    std::int32_t north = 0;
+    std::int32_t east = 0;
+    std::array<std::int32_t, 2> unused = {};  ///< told, for archives hold all bytes
+
+    [[nodiscard]] bool has(const Corner& corner) const noexcept {
+      return north == corner.north >> 1 && east == corner.east >> 1;
+    }
+  };
+
+  static std::size_t cell_of(const Corner& corner) noexcept {
+    return static_cast<std::size_t>(2 * (corner.north & 1) + (corner.east & 1));
+  }
+
+  /// As many as would fade from the epoch on to what is left of them.
+  [[nodiscard]] double plots_in(const Corner& corner) const noexcept {
+    const Tile& tile = tiles_[place(corner)];
+    return tile.has(corner) ? static_cast<double>(tile.plots[cell_of(corner)]) : 0.0;
+  }
 
   /// What is left of the plots of a target.
   [[nodiscard]] double faded(const LearnedPlots& learned, double time_s) const noexcept {
@@ -203,7 +214,8 @@ class ClutterMap {
   /// Counts the plots of all cells as of another epoch.
   void begin_epoch(double time_s) noexcept {
     const double factor = time_s > epoch_s_ ? faded_at(time_s) : 0.0;
-    for (Cell& cell : cells_) cell.plots *= factor;
+    for (Tile& tile : tiles_)
+      for (float& plots : tile.plots) plots *= static_cast<float>(factor);
     epoch_s_ = latest_s_ = time_s;
   }
 
@@ -249,10 +261,12 @@ class ClutterMap {
   }
 
   [[nodiscard]] std::size_t place(const Corner& corner) const noexcept {
-    const auto hash =
-        static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.north)) * 0x9E3779B97F4A7C15u ^
-        static_cast<std::uint64_t>(static_cast<std::uint32_t>(corner.east)) * 0xC2B2AE3D27D4EB4Fu;
-    return static_cast<std::size_t>(hash >> 50) & (cells_.size() - 1);
+    const auto spread = [](std::int32_t cell, std::uint64_t factor) {
+      return factor * static_cast<std::uint32_t>(cell >> 1);
+    };
+    const std::uint64_t hash =
+        spread(corner.north, 0x9E3779B97F4A7C15u) ^ spread(corner.east, 0xC2B2AE3D27D4EB4Fu);
+    return static_cast<std::size_t>(hash >> 50) & (tiles_.size() - 1);
   }
 
   double cell_m_;
@@ -260,7 +274,7 @@ class ClutterMap {
   double epoch_s_ = 0.0;
   double latest_s_ = -std::numeric_limits<double>::infinity();  ///< of the plots learned
   mutable detail::Fading fading_;  // what it remembers it would find again
-  std::vector<Cell> cells_;
+  std::vector<Tile> tiles_;
 };
 
 }  // namespace wakeline

@@ -28,7 +28,7 @@ class ClutterPatches {
  public:
   /// Without cells where `cell_m` is 0.
   ClutterPatches(double cell_m, double memory_s, int max_plots)
-      : memory_s_(memory_s), map_(cell_m, memory_s, kCells) {
+      : memory_s_(memory_s), map_(cell_m, memory_s, kTiles) {
     about_.reserve(static_cast<std::size_t>(max_plots));
   }
 
@@ -87,7 +87,7 @@ class ClutterPatches {
   }
 
  private:
-  static constexpr std::size_t kCells = 1 << 12;
+  static constexpr std::size_t kTiles = 1 << 11;
   static constexpr double kMore = 0.2, kMoreAtFirst = 20.0;
 
   double memory_s_;
