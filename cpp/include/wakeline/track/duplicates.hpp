@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "wakeline/core/angle.hpp"
 #include "wakeline/core/cholesky.hpp"
 #include "wakeline/track/config.hpp"
 #include "wakeline/track/place_index.hpp"
@@ -76,17 +75,17 @@ class Duplicates {
 
   /// Which tracks of these slots are to be deleted, in order: tentative ones at once, those with a
   /// number after some scans in a row, which it counts. Valid until the next call.
-  /// Tracks whose times are more than two periods of the antenna apart are not compared. The slots
-  /// are those between two bearings, which only serves to leave out others sooner. Two tracks that
+  /// They are compared with the tracks of `others`, but not those whose times are more than two
+  /// periods of the antenna apart. Two tracks that
   /// `seen_by_others(a, b)`, each by radars that do not see the other, are on one target as far
   /// apart as independent estimates of it are.
   template <class SeenByOthers>
-  std::span<const int> find(TrackList& tracks, std::span<const int> slots, double period_s,
-                            double from_rad, double to_rad, int radars,
+  std::span<const int> find(TrackList& tracks, std::span<const int> slots,
+                            std::span<const int> others, double period_s, int radars,
                             const SeenByOthers& seen_by_others) noexcept {
     longest_s_ = 2.0 * period_s;
     farthest_ = radars > 1 ? std::max(distance_, kSeenByOthers) : distance_;
-    index(tracks, slots, Outline(from_rad, to_rad));
+    index(tracks, slots, others);
     found_.clear();
     for (const int slot : slots) {
       Track& track = tracks.at(slot);
@@ -101,61 +100,25 @@ class Duplicates {
   }
 
  private:
-  /// The narrowest rectangle about some positions along the middle of two bearings.
-  class Outline {
-   public:
-    Outline(double from_rad, double to_rad) noexcept {
-      const double middle_rad = from_rad + (to_rad - from_rad) / 2;
-      axes_ << std::cos(middle_rad), std::sin(middle_rad), -std::sin(middle_rad),
-          std::cos(middle_rad);
-      // No two places are farther apart so than they are north or east.
-      axes_ /= axes_.row(0).cwiseAbs().sum();
-    }
-
-    void add(const Vec<double, 2>& position) noexcept {
-      const Vec<double, 2> place_m = axes_ * position;
-      least_m_ = least_m_.cwiseMin(place_m);
-      greatest_m_ = greatest_m_.cwiseMax(place_m);
-    }
-
-    /// A position is not nearer to any of these, north or east; negative inside.
-    [[nodiscard]] double apart_m(const Vec<double, 2>& position) const noexcept {
-      const Vec<double, 2> place_m = axes_ * position;
-      return (least_m_ - place_m).cwiseMax(place_m - greatest_m_).maxCoeff();
-    }
-
-   private:
-    static constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    Mat<double, 2, 2> axes_;
-    Vec<double, 2> least_m_ = Vec<double, 2>::Constant(kNowhere), greatest_m_ = -least_m_;
-  };
-
-  /// Indexes the tracks that may be on the target of one of the slots, about which it draws an
-  /// outline.
-  void index(const TrackList& tracks, std::span<const int> slots, Outline outline) noexcept {
+  /// Indexes the tracks that may be on the target of one of the slots.
+  void index(const TrackList& tracks, std::span<const int> slots,
+             std::span<const int> others) noexcept {
     positions_.clear();
     way_m_ = 0.0;
-    if (slots.empty()) return;
     constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    double begin_s = kNowhere, end_s = -kNowhere, widest = 0.0;
+    double begin_s = kNowhere, end_s = -kNowhere;
     for (const int slot : slots) {
       const Track& track = tracks.at(slot);
-      outline.add(track.position());
       begin_s = std::min(begin_s, track.time_s);
       end_s = std::max(end_s, track.time_s);
-      widest = std::max(widest, widest_m2(track));
     }
-    for (const int slot : tracks.slots()) {
+    for (const int slot : others) {
       const Track& track = tracks.at(slot);
       ends_[static_cast<std::size_t>(slot)] = 0;
-      const double way_m =
-          track.velocity().cwiseAbs().maxCoeff() *
-          std::min(std::max(end_s - track.time_s, track.time_s - begin_s), longest_s_);
-      const double apart_m = std::max(outline.apart_m(track.position()) - way_m, 0.0);
-      const double variance_m2 = widest_m2(track);
-      if (!(apart_m * apart_m <= reach_m2(widest + variance_m2))) continue;
-      positions_.add(track.position(), variance_m2, slot);
-      way_m_ = std::max(way_m_, way_m);
+      positions_.add(track.position(), widest_m2(track), slot);
+      way_m_ = std::max(
+          way_m_, track.velocity().cwiseAbs().maxCoeff() *
+                      std::min(std::max(end_s - track.time_s, track.time_s - begin_s), longest_s_));
     }
     positions_.sort();
   }

@@ -31,7 +31,8 @@ struct RadarState {
         clutter(config),
         ownership(config),
         initiation(config),
-        looks(static_cast<std::size_t>(config.max_tracks)) {}
+        looks(static_cast<std::size_t>(config.max_tracks)),
+        meetings(looks.size()) {}
 
   Radar radar;
   bool in_use = true;  ///< false once the radar has been removed
@@ -45,7 +46,8 @@ struct RadarState {
   ClutterDensity clutter;
   PlotOwnership ownership;
   TrackInitiation initiation;
-  std::vector<Look> looks;  ///< at each track, by slot
+  std::vector<Look> looks;        ///< at each track, by slot
+  std::vector<Meeting> meetings;  ///< with each track, by slot
 
   [[nodiscard]] Vec<double, 2> position() const noexcept { return own.position<double>(); }
 
@@ -55,12 +57,16 @@ struct RadarState {
   [[nodiscard]] const Look& look(const Track& track) const noexcept {
     return looks[static_cast<std::size_t>(track.slot)];
   }
+  [[nodiscard]] Meeting& meeting(const Track& track) noexcept {
+    return meetings[static_cast<std::size_t>(track.slot)];
+  }
 
   /// Begins to look at a new track. The beam was there last when it had the track's bearing.
   void open(const Track& track, double time_s) noexcept {
     const Vec<double, 2> d = track.position() - position();
     const double passed_rad = beam.last_rad(std::atan2(d[1], d[0]) + radar.bearing_offset_rad);
-    look(track) = {.looked_s = time_s, .passed_rad = passed_rad, .look_rad = passed_rad};
+    look(track) = {.looked_s = time_s};
+    meeting(track) = {passed_rad, passed_rad};
   }
 
   /// Whether the radar covers a position.
@@ -82,7 +88,10 @@ struct RadarState {
     initiation.archive(fields);
     plots.archive(fields);
     ownership.archive(fields, plots.size());
-    for (const int slot : slots) looks[static_cast<std::size_t>(slot)].archive(fields);
+    for (const int slot : slots) {
+      looks[static_cast<std::size_t>(slot)].archive(fields);
+      fields(meetings[static_cast<std::size_t>(slot)]);
+    }
   }
 };
 

@@ -39,7 +39,7 @@ class ScanStages {
         duplicates_(picture.config, picture.gate.threshold()) {
     const std::size_t tracks = picture.estimators.size();
     const auto plots = static_cast<std::size_t>(picture.config.max_plots);
-    for (std::vector<int>* slots : {&due_, &waiting_, &rivals_, &competing_})
+    for (std::vector<int>* slots : {&due_, &waiting_, &rivals_, &competing_, &met_})
       slots->reserve(tracks);
     touched_.reserve(2 * tracks);
     arcs_.reserve(tracks);
@@ -96,7 +96,7 @@ class ScanStages {
     for_each_group(due_, [&](std::span<const int> slots) { update(slots); });
 
     confirm_and_delete();
-    delete_duplicates(sector);
+    delete_duplicates();
     for (const int slot : touched_) picture_.number_confirmed(picture_.tracks.at(slot));
     state().clutter.learn(
         state().plots, state().ownership.clutter_probability(),
@@ -147,7 +147,7 @@ class ScanStages {
       half_rad = width_rad / 2;
       if (missed_rad > 0.0)
         for (const int slot : picture_.tracks.slots())
-          look_at(picture_.tracks.at(slot)).miss_turns(missed_rad);
+          state().meeting(picture_.tracks.at(slot)).miss_turns(missed_rad);
     } else {
       state().beam.turn();
     }
@@ -175,8 +175,7 @@ class ScanStages {
     if (whole_turn_) {
       for (const int slot : picture_.tracks.slots()) {
         const Track& track = picture_.tracks.at(slot);
-        look_at(track).passed_rad = beam_rad - kPi<double>;
-        look_at(track).look_rad = beam_rad;
+        state().meeting(track) = {beam_rad - kPi<double>, beam_rad};
         if (may_be_seen(track)) due_.push_back(slot);
       }
       return;
@@ -184,7 +183,7 @@ class ScanStages {
     rival_plot_.resize(static_cast<std::size_t>(state().plots.size()));
     std::iota(rival_plot_.begin(), rival_plot_.end(), 0);
     for (const int slot : picture_.tracks.slots())
-      if (beam_rad >= state().looks[static_cast<std::size_t>(slot)].look_rad) look_for(slot);
+      if (beam_rad >= state().meetings[static_cast<std::size_t>(slot)].look_rad) look_for(slot);
     defer();
   }
 
@@ -195,10 +194,10 @@ class ScanStages {
     const double beam_rad = state().beam.angle_rad();
     const GateSight sight(
         position_at_constant_velocity(track.kinematics, state().time_s - track.time_s),
-        look_at(track).passed_rad, picture_.gate.threshold(), state().radar, state().own);
+        state().meeting(track).passed_rad, picture_.gate.threshold(), state().radar, state().own);
     BeamArc arc = sight.arc(picture_.config.outlier_variance());
     if (arc.from_rad > beam_rad) {
-      look_at(track).look_rad = look_rad(track, arc);
+      state().meeting(track).look_rad = look_rad(track, arc);
       return;
     }
     const bool is_passed = arc.to_rad <= beam_rad;
@@ -243,9 +242,9 @@ class ScanStages {
 
   /// Notes that the beam has passed a track.
   void pass(Track& track, const BeamArc& arc) noexcept {
-    Look& look = look_at(track);
-    look.passed_rad = std::max(arc.centre_rad, state().beam.last_rad(arc.centre_rad) - Beam::kTurn);
-    look.look_rad = look_rad(track, arc) + Beam::kTurn;
+    state().meeting(track) = {
+        std::max(arc.centre_rad, state().beam.last_rad(arc.centre_rad) - Beam::kTurn),
+        look_rad(track, arc) + Beam::kTurn};
   }
 
   /// Has tracks wait that compete for a plot with one that waits, so that association is of both.
@@ -682,18 +681,35 @@ class ScanStages {
     forget_lost();
   }
 
-  void delete_duplicates(const Sector* sector) noexcept {
-    // Of a whole turn any two bearings do.
-    const double from_rad = sector == nullptr ? 0.0 : sector->from_rad;
-    const double to_rad = sector == nullptr ? kPi<double> / 2 : sector->to_rad;
+  void delete_duplicates() noexcept {
+    list_met();
     const auto seen_by_others = [&](const Track& a, const Track& b) {
       return are_seen_by_others(a, b);
     };
-    for (const int slot :
-         duplicates_.find(picture_.tracks, due_, picture_.longest_period_s(), from_rad, to_rad,
-                          picture_.radars_in_use(), seen_by_others))
+    for (const int slot : duplicates_.find(picture_.tracks, due_, met_, picture_.longest_period_s(),
+                                           picture_.radars_in_use(), seen_by_others))
       lose(picture_.tracks.at(slot), LossReason::kDuplicate);
     forget_lost();
+  }
+
+  /// Lists the tracks whose gate the beam has met where it met those of the tracks that are due: a
+  /// duplicate of one is in its gate.
+  void list_met() noexcept {
+    const double beam_rad = state().beam.angle_rad();
+    double begin_rad = beam_rad;
+    for (const int slot : due_) {
+      const Meeting& meeting = state().meetings[static_cast<std::size_t>(slot)];
+      begin_rad = std::min(begin_rad, meeting.look_rad - Beam::kTurn);
+    }
+    met_.resize(picture_.tracks.slots().size());
+    std::size_t count = 0;
+    for (const int slot : picture_.tracks.slots()) {
+      const Meeting& meeting = state().meetings[static_cast<std::size_t>(slot)];
+      met_[count] = slot;  // without a branch, which a processor would often guess wrong
+      count += std::size_t{whole_turn_} | std::size_t{meeting.look_rad <= beam_rad} |
+               std::size_t{meeting.end_rad() >= begin_rad};
+    }
+    met_.resize(count);
   }
 
   /// Whether each of two tracks is seen by a radar, and none sees both.
@@ -735,7 +751,7 @@ class ScanStages {
           if (track == nullptr) return;
           track->history = 3u;
           Look& look = look_at(*track);
-          look.passed_rad = look.look_rad = start.beam_rad;
+          state().meeting(*track) = {start.beam_rad, start.beam_rad};
           look.learned = start.learned;
           look.seen_s = start.time_s;
         });
@@ -777,6 +793,7 @@ class ScanStages {
   std::vector<int> rivals_;      ///< of these that have a candidate in common with one that is due
   std::vector<int> competing_;   ///< both
   std::vector<int> touched_;     ///< of the tracks for which this call has counted
+  std::vector<int> met_;         ///< of the tracks that may be duplicates of one that is due
   std::vector<BeamArc> arcs_;    ///< of the tracks that are due
   std::vector<int> near_plot_;   ///< by slot: a plot in the gate of a track, or `kNoPlot`
   std::vector<int> rival_plot_;  ///< by plot: a rival of it, or itself
