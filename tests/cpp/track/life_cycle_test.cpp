@@ -91,6 +91,20 @@ TEST(LifeCycle, AllowsMoreMissesToATrackThatWasSeenMore) {
   EXPECT_EQ(reason(seen("1100000", TrackStatus::kCoasting)), LossReason::kMissed);
 }
 
+TEST(LifeCycle, MissesInWhichAnotherTrackHadThePlotCountHalf) {
+  const TrackerConfig config{.coast_scans = 4.0, .coast_scans_per_hit = 0.0};
+  const auto reason_after = [&](int shared, int alone) {
+    Track track = seen("111", TrackStatus::kCoasting);
+    for (int k = 0; k < shared; ++k) track.count(false, true);
+    for (int k = 0; k < alone; ++k) track.count(false);
+    return reason_to_delete(config, kRadar, track);
+  };
+  EXPECT_EQ(reason_after(8, 0), LossReason::kNone);
+  EXPECT_EQ(reason_after(9, 0), LossReason::kMissed);
+  EXPECT_EQ(reason_after(4, 2), LossReason::kNone);
+  EXPECT_EQ(reason_after(4, 3), LossReason::kMissed);
+}
+
 TEST(LifeCycle, AStartInDenseClutterIsNotDeletedBeforeItIsMoreDoubtful) {
   const TrackerConfig config;
   Track track = seen("11");

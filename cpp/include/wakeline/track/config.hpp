@@ -128,7 +128,8 @@ struct TrackerConfig {
         field("coast_scans_per_hit", &C::coast_scans_per_hit, kScans, "scans",
               "Further misses allowed for each plot that the track has had."),
         field("coast_scans_max", &C::coast_scans_max, kScans, "scans",
-              "Upper limit of the misses in a row of a confirmed track."),
+              "Upper limit of the misses in a row of a confirmed track; one in which another track "
+              "had its plot counts half."),
         field(
             "shown_probability", &C::shown_probability, kProbability, "1",
             "A coasting track is held without being shown when a target that is there has so many "

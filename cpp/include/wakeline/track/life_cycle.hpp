@@ -68,7 +68,10 @@ inline bool confirm_or_coast(const TrackerConfig& config, const Radar& radar, do
 /// Why a track is to be deleted, or `kNone`.
 inline LossReason reason_to_delete(const TrackerConfig& config, const Radar& radar,
                                    const Track& track) noexcept {
-  if (track.misses > allowed_misses(config, track)) return LossReason::kMissed;
+  // Where another track has its plot a target may be there still: such misses count half.
+  const double misses =
+      track.confirmed() ? 0.5 * (track.misses + track.unexplained_misses) : track.misses;
+  if (misses > allowed_misses(config, track)) return LossReason::kMissed;
   if (!track.confirmed() && track.existence < least_existence(config, track))
     return LossReason::kDoubtful;
   if (exceeds_speed(track.kinematics, speed_limit_mps(config, radar),
