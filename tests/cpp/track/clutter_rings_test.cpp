@@ -62,6 +62,41 @@ TEST(ClutterRings, FindSeaClutterWhereItIs) {
   EXPECT_NEAR(rings.density(4500.0) / (60.0 / (std::numbers::pi * 35e6)), 1.0, 0.25);
 }
 
+// Sea clutter of one eighth of the compass, seen by an antenna that is not at the origin.
+TEST(ClutterRings, FindSeaClutterUpwind) {
+  constexpr double kRange_m = 600.0, kEighth_rad = std::numbers::pi / 4.0;
+  constexpr int kPlots = 60;
+  const OwnShip own{.north_m = 4000.0, .east_m = -7000.0};
+  const auto plot_at = [&](double bearing_rad) {
+    ScanPlots scan(1);
+    scan.convert(kStageRadar, std::vector<Plot>{{0.0, kRange_m - 50.0, bearing_rad, own}}, 0.0, 1.0);
+    return scan[0];
+  };
+  for (int upwind = 0; upwind < 8; ++upwind) {
+    ClutterRings rings(kPrior_per_m2, 60.0);
+    Draw draw(7);
+    ScanPlots scan(100);
+    for (int k = 0; k < 40; ++k) {
+      std::vector<Plot> plots;
+      spread(draw, kPlots, 0.0, kRange_m, plots);
+      for (Plot& plot : plots) {
+        plot.bearing_rad = kEighth_rad * draw.uniform(upwind, upwind + 1);
+        plot.own = own;
+      }
+      scan.convert(kStageRadar, plots, 0.0, 1.0);
+      rings.learn(scan, std::vector<double>(plots.size(), 1.0), 2.5, 1.0);
+    }
+    const double there_per_m2 = kPlots / (kEighth_rad / 2.0 * kRange_m * kRange_m);
+    for (int eighth = 0; eighth < 8; ++eighth) {
+      const double density = rings.density(plot_at(kEighth_rad * (eighth + 0.5)));
+      if (eighth == upwind)
+        EXPECT_NEAR(density / there_per_m2, 1.0, 0.25);
+      else
+        EXPECT_EQ(density, rings.density(kRange_m - 50.0)) << eighth << " of " << upwind;
+    }
+  }
+}
+
 TEST(ClutterRings, ForgetWhatIsPast) {
   ClutterRings rings = learned(40, 60, 60);
   ScanPlots scan(10);

@@ -48,7 +48,7 @@ class ClutterDensity {
   [[nodiscard]] double without(const OwnPlots& own, const ScanPlots& plots,
                                int plot) const noexcept {
     const double of_patch =
-        patches_.density(own.of_patches, plots, plot, rings_.density(plots[plot].range_m));
+        patches_.density(own.of_patches, plots, plot, rings_.density(plots[plot]));
     const double mapped = mapped_per_m2_[static_cast<std::size_t>(plot)];
     if (mapped <= of_patch) return of_patch;
     const double of_own =

@@ -20,17 +20,24 @@ namespace wakeline {
 ///
 /// On an area A that has had n false plots in T scans the density is (n + 1) / (A T + 1 / ρ), the
 /// mean of its gamma posterior: as if there had been one plot more, at the prior density ρ. For the
-/// whole sea ρ is given; for a ring it is the density of the whole sea. n and T fade alike, so that
-/// the first scans count in full.
+/// whole sea ρ is given; for a ring it is the density of the whole sea, and for an eighth of a near
+/// ring that of the ring, as there is more sea clutter upwind. In such a small area one plot a scan
+/// may be a target's and is left out. n and T fade alike, so that the first scans count in full.
 class ClutterRings {
  public:
   ClutterRings(double prior_per_m2, double memory_s)
       : prior_per_m2_(prior_per_m2), memory_s_(memory_s) {
-    density_.fill(prior_per_m2);
+    evaluate();
   }
 
   /// False plots per m² and scan at a range; at least the prior.
   [[nodiscard]] double density(double range_m) const noexcept { return density_[ring_of(range_m)]; }
+
+  /// About a plot: that of its range, or more where it is upwind.
+  [[nodiscard]] double density(const ScanPlot& plot) const noexcept {
+    const std::size_t ring = ring_of(plot.range_m);
+    return ring < kNear ? eighth_density_[ring][eighth_of(plot)] : density_[ring];
+  }
 
   /// Learns each plot that does not wait, of so many turns of the antenna, which ended `dt_s` after
   /// those before, with the probability that it is false.
@@ -39,12 +46,16 @@ class ClutterRings {
     const double left = std::exp(-dt_s / memory_s_);
     scans_ = left * scans_ + turns;
     for (double& count : plots_) count *= left;
+    for (auto& ring : eighth_plots_)
+      for (double& count : ring) count *= left;
     double farthest_m = 0.0;
     for (int k = 0; k < plots.size(); ++k) {
       if (plots[k].waits) continue;
-      const double range_m = plots[k].range_m;
-      plots_[ring_of(range_m)] += false_probability[static_cast<std::size_t>(k)];
-      farthest_m = std::max(farthest_m, range_m);
+      const std::size_t ring = ring_of(plots[k].range_m);
+      const double is_false = false_probability[static_cast<std::size_t>(k)];
+      plots_[ring] += is_false;
+      if (ring < kNear) eighth_plots_[ring][eighth_of(plots[k])] += is_false;
+      farthest_m = std::max(farthest_m, plots[k].range_m);
     }
     if (plots.size() > 0)
       farthest_m_ = std::max(farthest_m, left * farthest_m_ + (1.0 - left) * farthest_m);
@@ -54,6 +65,7 @@ class ClutterRings {
   /// Saves or restores what has been learned.
   void archive(Archive& fields) {
     fields(plots_);
+    fields(eighth_plots_);
     fields(scans_);
     fields(farthest_m_);
     evaluate();
@@ -61,12 +73,23 @@ class ClutterRings {
 
  private:
   static constexpr std::size_t kRings = 18;
+  static constexpr std::size_t kNear = 4;  ///< rings in eighths, up to 707 m
+  static constexpr std::size_t kEighths = 8;
   static constexpr double kInnermost_m = 250.0;  ///< radius of the first; the areas double
+  using Eighths = std::array<std::array<double, kEighths>, kNear>;
 
   static std::size_t ring_of(double range_m) noexcept {
     const double ratio = range_m / kInnermost_m;
     if (!(ratio >= 1.0)) return 0;
     return std::min(kRings - 1, static_cast<std::size_t>(std::ilogb(ratio * ratio)) + 1);
+  }
+
+  /// In which eighth of the compass a plot is from the antenna.
+  static std::size_t eighth_of(const ScanPlot& plot) noexcept {
+    const double north_m = plot.position.mean[0] - plot.errors.antenna_north_m;
+    const double east_m = plot.position.mean[1] - plot.errors.antenna_east_m;
+    return 4 * std::size_t{north_m < 0.0} + 2 * std::size_t{east_m < 0.0} +
+           std::size_t{std::abs(north_m) < std::abs(east_m)};
   }
 
   /// The square of a ring's outer radius, or of the farthest plot if that is nearer, m².
@@ -88,16 +111,23 @@ class ClutterRings {
     for (std::size_t ring = 0; ring < kRings; ++ring) {
       const double outer_m2 = end_m2(ring);
       density_[ring] = std::max(prior_per_m2_, posterior(plots_[ring], outer_m2 - inner_m2, even));
+      for (std::size_t k = 0; ring < kNear && k < kEighths; ++k)
+        eighth_density_[ring][k] =
+            std::max(density_[ring],
+                     posterior(std::max(eighth_plots_[ring][k] - scans_, 0.0),
+                               (outer_m2 - inner_m2) / kEighths, density_[ring]));
       inner_m2 = outer_m2;
     }
   }
 
   double prior_per_m2_;
   double memory_s_;
-  std::array<double, kRings> plots_ = {};  ///< n of each ring
+  std::array<double, kRings> plots_ = {};  ///< n of each ring,
+  Eighths eighth_plots_ = {};              ///< and of each eighth of a near one
   double scans_ = 0.0;                     ///< T
   double farthest_m_ = 0.0;  ///< mean range of the farthest plot, or that of the last scan
   std::array<double, kRings> density_;
+  Eighths eighth_density_;
 };
 
 }  // namespace wakeline
