@@ -168,12 +168,15 @@ class TrackInitiation {
       if (plots[k].waits || !(free > config_.free_plot)) continue;
       if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
+        const double likelihood = likelihood_of_way(radar, earlier, plots[k]);
+        if (likelihood == 0.0) return;
         const LearnedPlots first{earlier.position.mean, 1.0, earlier.time_s};
         const OwnPlots own{first, first};
         const double first_per_m2 = earlier.free * free * first_seen(earlier);
-        const double probability = existence(radar, earlier, plots[k], first_per_m2,
-                                             clutter.without(own, plots, k), detection_probability);
-        if (probability == 0.0 || !has_room(probability)) return;
+        const double probability =
+            existence(likelihood, (plots[k].time_s - earlier.time_s) / radar.period_s, first_per_m2,
+                      clutter.without(own, plots, k), detection_probability);
+        if (!has_room(probability)) return;
         start(TrackStart{belief(radar, earlier, plots[k]), plots[k].time_s, plots[k].beam_rad,
                          probability,
                          clutter.with(own, plots, k, ownership.clutter_probability(),
@@ -217,22 +220,26 @@ class TrackInitiation {
   static constexpr double kLongestWay = 12.0;    ///< sigma²; of two plots of a target 99.75 %
   static constexpr int kLeastScans = 2;  ///< so far apart two plots of a start may be at least
 
-  /// Probability that two plots are a target's and not clutter of density ρ: odds of β/ρ for the
-  /// first, with the density β of targets first seen where both plots are free; of PD N(z₂; z₁) / ρ
-  /// for the second, with the prior of the velocity; and 1 - PD for each scan between. 0 where they
-  /// are farther apart than those of a target are, so that clutter starts fewer tracks.
-  [[nodiscard]] double existence(const Radar& radar, const FreePlot& earlier, const ScanPlot& later,
-                                 double first_seen_per_m2, double clutter_per_m2,
-                                 double detection_probability) const noexcept {
+  /// N(z₂; z₁) of two plots of a target, with the prior of the velocity. 0 where they are farther
+  /// apart than those of a target are, so that clutter starts fewer tracks.
+  [[nodiscard]] double likelihood_of_way(const Radar& radar, const FreePlot& earlier,
+                                         const ScanPlot& later) const noexcept {
     const double dt_s = later.time_s - earlier.time_s;
     const Cholesky<2> factor(earlier.position.covariance + later.position.covariance +
                              dt_s * dt_s * prior_velocity(radar).covariance);
     if (!factor.ok()) return 0.0;
-    const double squared_way = factor.squared_norm(later.position.mean - earlier.position.mean);
-    if (squared_way > kLongestWay) return 0.0;
-    const double likelihood = std::exp(-0.5 * squared_way) *
-                              factor.inverse_root_determinant() / (2.0 * std::numbers::pi);
-    const double missed = std::max(std::round(dt_s / radar.period_s) - 1.0, 0.0);
+    const double squared = factor.squared_norm(later.position.mean - earlier.position.mean);
+    if (squared > kLongestWay) return 0.0;
+    return std::exp(-0.5 * squared) * factor.inverse_root_determinant() / (2.0 * std::numbers::pi);
+  }
+
+  /// Probability that two plots are a target's and not clutter of density ρ: odds of β/ρ for the
+  /// first, with the density β of targets first seen where both plots are free; of PD N(z₂; z₁) / ρ
+  /// for the second; and 1 - PD for each scan between.
+  [[nodiscard]] static double existence(double likelihood, double periods_apart,
+                                        double first_seen_per_m2, double clutter_per_m2,
+                                        double detection_probability) noexcept {
+    const double missed = std::max(std::round(periods_apart) - 1.0, 0.0);
     const double miss = 1.0 - detection_probability;
     const double all_missed = missed == 0.0 ? 1.0 : missed == 1.0 ? miss : std::pow(miss, missed);
     const double odds = first_seen_per_m2 / clutter_per_m2 * detection_probability * likelihood /
