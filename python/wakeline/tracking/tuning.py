@@ -462,18 +462,30 @@ def _maximized(
         step *= min(1.0, _LARGEST_STEP / max(np.abs(step).max(), 1e-300))
         steps = 0.5 ** np.arange(6)[:, np.newaxis] * step
         arms = _STEP / 2 * np.vstack([np.eye(len(u)), -np.eye(len(u))])
-        for way in (steps, arms):  # a parameter alone where Newton's method gains nothing
-            for trial in np.clip(u + way, low, high):
-                if (value := of(trial)) > best + (_ENOUGH if way is arms else 0.0):
-                    break
-            else:
-                continue
-            gain, u, best = value - best, trial, value
-            if gain >= _ENOUGH:
-                break
-        else:
+        before = best
+        u, best = _better(of, u, best, np.clip(u + steps, low, high))
+        if best - before >= _ENOUGH:
+            continue
+        # A parameter alone where Newton's method gains nothing.
+        before = best
+        u, best = _better(of, u, best, np.clip(u + arms, low, high), by=_ENOUGH)
+        if best == before:
             break
     return u
+
+
+def _better(
+    of: Callable[[np.ndarray], float],
+    u: np.ndarray,
+    value: float,
+    trials: np.ndarray,
+    by: float = 0.0,
+) -> tuple[np.ndarray, float]:
+    """The first of the trials that is better by so much, and its value; else what was."""
+    for trial in trials:
+        if (tried := of(trial)) > value + by:
+            return trial, tried
+    return u, value
 
 
 def _std(hessian: np.ndarray) -> np.ndarray:
