@@ -102,7 +102,8 @@ TEST(ClutterMap, NoPlotCountsForMuchMoreThanWhenItCame) {
     const double before_s = map.no_sooner_s(97.5);
     const double before = map.density({50.0, 50.0}, before_s, kPeriod);
     EXPECT_LE(before, 1.2 * when_it_came);
-    EXPECT_NEAR(map.density_of(learned, {50.0, 50.0}, before_s, kPeriod), before, kRounding * before);
+    EXPECT_NEAR(map.density_of(learned, {50.0, 50.0}, before_s, kPeriod), before,
+                kRounding * before);
   }
 }
 
@@ -110,7 +111,8 @@ TEST(ClutterMap, FadesWithItsMemory) {
   ClutterMap map(kCell, kMemory);
   map.add({50.0, 50.0}, 10.0, 1.0);
   const double fresh = map.density({50.0, 50.0}, 10.0, kPeriod);
-  EXPECT_NEAR(map.density({50.0, 50.0}, 10.0 + kMemory, kPeriod) / fresh, std::exp(-1.0), kRounding);
+  EXPECT_NEAR(map.density({50.0, 50.0}, 10.0 + kMemory, kPeriod) / fresh, std::exp(-1.0),
+              kRounding);
   EXPECT_LT(map.density({50.0, 50.0}, 10.0 + 100 * kMemory, kPeriod), 1e-40);
 }
 

@@ -69,7 +69,8 @@ TEST(ClutterRings, FindSeaClutterUpwind) {
   const OwnShip own{.north_m = 4000.0, .east_m = -7000.0};
   const auto plot_at = [&](double bearing_rad) {
     ScanPlots scan(1);
-    scan.convert(kStageRadar, std::vector<Plot>{{0.0, kRange_m - 50.0, bearing_rad, own}}, 0.0, 1.0);
+    scan.convert(kStageRadar, std::vector<Plot>{{0.0, kRange_m - 50.0, bearing_rad, own}}, 0.0,
+                 1.0);
     return scan[0];
   };
   for (int upwind = 0; upwind < 8; ++upwind) {

@@ -113,9 +113,8 @@ class ClutterRings {
       density_[ring] = std::max(prior_per_m2_, posterior(plots_[ring], outer_m2 - inner_m2, even));
       for (std::size_t k = 0; ring < kNear && k < kEighths; ++k)
         eighth_density_[ring][k] =
-            std::max(density_[ring],
-                     posterior(std::max(eighth_plots_[ring][k] - scans_, 0.0),
-                               (outer_m2 - inner_m2) / kEighths, density_[ring]));
+            std::max(density_[ring], posterior(std::max(eighth_plots_[ring][k] - scans_, 0.0),
+                                               (outer_m2 - inner_m2) / kEighths, density_[ring]));
       inner_m2 = outer_m2;
     }
   }

@@ -76,9 +76,8 @@ class Duplicates {
   /// Which tracks of these slots are to be deleted, in order: tentative ones at once, those with a
   /// number after some scans in a row, which it counts. Valid until the next call.
   /// They are compared with the tracks of `others`, but not those whose times are more than two
-  /// periods of the antenna apart. Two tracks that
-  /// `seen_by_others(a, b)`, each by radars that do not see the other, are on one target as far
-  /// apart as independent estimates of it are.
+  /// periods of the antenna apart. Two tracks that `seen_by_others(a, b)`, each by radars that do
+  /// not see the other, are on one target as far apart as independent estimates of it are.
   template <class SeenByOthers>
   std::span<const int> find(TrackList& tracks, std::span<const int> slots,
                             std::span<const int> others, double period_s, int radars,
@@ -105,6 +104,7 @@ class Duplicates {
              std::span<const int> others) noexcept {
     positions_.clear();
     way_m_ = 0.0;
+    if (slots.empty()) return;
     constexpr double kNowhere = std::numeric_limits<double>::infinity();
     double begin_s = kNowhere, end_s = -kNowhere;
     for (const int slot : slots) {

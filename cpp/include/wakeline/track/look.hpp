@@ -32,9 +32,9 @@ struct Look {
   double visibility = 1.0;  ///< probability that the radar can see the target
   double looked_s = 0.0;    ///< when the radar last looked: a plot or a miss
   double seen_s = -std::numeric_limits<double>::infinity();  ///< when it saw the target last
-  int misses = 0;  ///< of this radar, in a row
-  Vec<double, 2> innovation = Vec<double, 2>::Zero();  ///< the last one, whitened
-  double product = 0.0;                                ///< of the last two
+  int misses = 0;                                            ///< of this radar, in a row
+  Vec<double, 2> innovation = Vec<double, 2>::Zero();        ///< the last one, whitened
+  double product = 0.0;                                      ///< of the last two
   OwnPlots learned = {};  ///< what was learned as clutter of the target's own plots
 
   void archive(Archive& fields) {

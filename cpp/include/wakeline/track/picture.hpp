@@ -38,7 +38,7 @@ struct Picture {
   static constexpr double kSurelyExists = 0.999;       ///< a target that was designated or reports
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 21;
+  static constexpr std::uint32_t kArchiveVersion = 22;
 
   Picture(std::span<const Radar> of, const TrackerConfig& with, const Estimator& made_of)
       : config(validated(with)),
