@@ -11,6 +11,7 @@
 
 #include "wakeline/core/archive.hpp"
 #include "wakeline/track/clutter_map.hpp"
+#include "wakeline/track/clutter_rings.hpp"
 #include "wakeline/track/scan_plots.hpp"
 
 namespace wakeline {
@@ -21,9 +22,8 @@ namespace wakeline {
 /// It is that of the densest of the four cells about a plot, so that it holds in full up to the
 /// edge of a patch and where a patch moves to. The density of a cell of area A that has had n free
 /// plots in T scans is (n + k) / (A T + k / ρ), the mean of its gamma posterior, where ρ is the
-/// density of the range: as if there had been k plots more. In the first scans all plots are free,
-/// for no track can own them yet, and k is larger: k = 0.2 + 20 exp(-T / 2). Nearer to the antenna
-/// than a cell is wide the rings are finer, and it is ρ. Memory is taken by the constructor.
+/// density of the range: as if there had been k plots more, 0.2 and `more_at_first`. Nearer to the
+/// antenna than a cell is wide the rings are finer, and it is ρ. Memory is taken by the constructor.
 class ClutterPatches {
  public:
   /// Without cells where `cell_m` is 0.
@@ -38,7 +38,7 @@ class ClutterPatches {
     if (!map_.enabled()) return;
     time_s_ = map_.no_sooner_s(plots.scan_s() - before_s);
     const double scans = scans_ > 0.0 ? scans_ * std::exp((learned_s_ - time_s_) / memory_s_) : 0.0;
-    more_ = kMore + kMoreAtFirst * std::exp(-scans / 2.0);
+    more_ = kMore + more_at_first(scans);
     area_m2_ = map_.cell_m() * map_.cell_m() * scans;
     for (const ScanPlot& plot : plots)
       about_.push_back(map_.plots_about(plot.position.mean, time_s_));
@@ -88,7 +88,7 @@ class ClutterPatches {
 
  private:
   static constexpr std::size_t kTiles = 1 << 11;
-  static constexpr double kMore = 0.2, kMoreAtFirst = 20.0;
+  static constexpr double kMore = 0.2;
 
   double memory_s_;
   ClutterMap map_;

@@ -15,14 +15,19 @@
 
 namespace wakeline {
 
+/// As if a small area had had so many plots more, at the density about it, after T scans: in the
+/// first ones all plots are free, for no track can own them yet.
+inline double more_at_first(double scans) noexcept { return 20.0 * std::exp(-scans / 2.0); }
+
 /// The density of false plots by their range from the antenna, learned with a fading memory: even
 /// clutter over the whole sea, and sea clutter that falls off with range.
 ///
-/// On an area A that has had n false plots in T scans the density is (n + 1) / (A T + 1 / ρ), the
-/// mean of its gamma posterior: as if there had been one plot more, at the prior density ρ. For the
-/// whole sea ρ is given; for a ring it is the density of the whole sea, and for an eighth of a near
-/// ring that of the ring, as there is more sea clutter upwind. In such a small area one plot a scan
-/// may be a target's and is left out. n and T fade alike, so that the first scans count in full.
+/// On an area A that has had n false plots in T scans the density is (n + k) / (A T + k / ρ), the
+/// mean of its gamma posterior: as if there had been k plots more, at the prior density ρ. For the
+/// whole sea ρ is given and k = 1; for a ring ρ is the density of the whole sea. As there is more
+/// sea clutter upwind, near rings are in eighths, whose ρ is that of the ring and k is larger by
+/// `more_at_first`; in such a small area one plot a scan may be a target's and is left out. n and T
+/// fade alike, so that the first scans count in full.
 class ClutterRings {
  public:
   ClutterRings(double prior_per_m2, double memory_s)
@@ -99,11 +104,13 @@ class ClutterRings {
     return std::min(std::ldexp(kInnermost_m * kInnermost_m, static_cast<int>(ring)), reach_m2);
   }
 
-  [[nodiscard]] double posterior(double plots, double squared_m2, double prior) const noexcept {
-    return (plots + 1.0) / (std::numbers::pi * squared_m2 * scans_ + 1.0 / prior);
+  [[nodiscard]] double posterior(double plots, double squared_m2, double prior,
+                                 double more = 1.0) const noexcept {
+    return (plots + more) / (std::numbers::pi * squared_m2 * scans_ + more / prior);
   }
 
   void evaluate() noexcept {
+    const double more_of_eighth = 1.0 + more_at_first(scans_);
     const double all = std::accumulate(plots_.begin(), plots_.end(), 0.0);
     const double even =
         std::max(prior_per_m2_, posterior(all, farthest_m_ * farthest_m_, prior_per_m2_));
@@ -113,8 +120,9 @@ class ClutterRings {
       density_[ring] = std::max(prior_per_m2_, posterior(plots_[ring], outer_m2 - inner_m2, even));
       for (std::size_t k = 0; ring < kNear && k < kEighths; ++k)
         eighth_density_[ring][k] =
-            std::max(density_[ring], posterior(std::max(eighth_plots_[ring][k] - scans_, 0.0),
-                                               (outer_m2 - inner_m2) / kEighths, density_[ring]));
+            std::max(density_[ring],
+                     posterior(std::max(eighth_plots_[ring][k] - scans_, 0.0),
+                               (outer_m2 - inner_m2) / kEighths, density_[ring], more_of_eighth));
       inner_m2 = outer_m2;
     }
   }
