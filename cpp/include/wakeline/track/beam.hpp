@@ -160,6 +160,23 @@ class Beam {
   double turn_before_s_ = std::numeric_limits<double>::infinity();
 };
 
+/// Where the beam of a radar meets the gate of a track, by its angles, unwrapped.
+struct Meeting {
+  double passed_rad = 0.0;  ///< when it last passed the target
+  double look_rad = 0.0;    ///< before that angle it does not reach the gate
+
+  /// Up to which angle the gate that it last passed may have reached.
+  [[nodiscard]] double end_rad() const noexcept {
+    return 2.0 * passed_rad + Beam::kTurn - look_rad;
+  }
+
+  /// The beam has missed turns of that angle.
+  void miss_turns(double missed_rad) noexcept {
+    passed_rad += missed_rad;
+    look_rad += missed_rad;
+  }
+};
+
 /// Arc tangent of a positive slope. Of a gentle one it is the slope, which takes less time and is
 /// more by a hundredth at most.
 inline double angle_of(double slope) noexcept {

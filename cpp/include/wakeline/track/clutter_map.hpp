@@ -184,7 +184,7 @@ class ClutterMap {
     std::array<float, 4> plots = {};  ///< as many as would fade from the epoch on to what is left
     std::int32_t north = 0;
     std::int32_t east = 0;
-    std::array<std::int32_t, 2> unused = {};  ///< told, for archives hold all bytes
+    std::array<std::int32_t, 2> unused = {};  ///< no padding, as archives hold all bytes
 
     [[nodiscard]] bool has(const Corner& corner) const noexcept {
       return north == corner.north >> 1 && east == corner.east >> 1;

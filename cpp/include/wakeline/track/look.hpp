@@ -4,28 +4,10 @@
 
 #include <limits>
 
-#include "wakeline/core/angle.hpp"
 #include "wakeline/core/archive.hpp"
 #include "wakeline/track/clutter_map.hpp"
 
 namespace wakeline {
-
-/// Where the beam of a radar meets the gate of a track, by its angles, unwrapped.
-struct Meeting {
-  double passed_rad = 0.0;  ///< when it last passed the target
-  double look_rad = 0.0;    ///< before that angle it does not reach the gate
-
-  /// Up to which angle the gate that it last passed may have reached.
-  [[nodiscard]] double end_rad() const noexcept {
-    return 2.0 * passed_rad + 2 * kPi<double> - look_rad;
-  }
-
-  /// The beam has missed turns of that angle.
-  void miss_turns(double missed_rad) noexcept {
-    passed_rad += missed_rad;
-    look_rad += missed_rad;
-  }
-};
 
 /// What is known of a track as one radar sees it.
 struct Look {
