@@ -15,7 +15,8 @@
 
 NEES is the normalized estimation error squared, of position or velocity: 2 where the covariance is
 right. Simulated echoes wander by `extent_std_m` of the radar's parameters. A tenth of the runs,
-rounded up, is drawn of each scenario, five times as many of ships, a hundredth of each scene.
+rounded up, is drawn of each scenario, five times as many of ships and ranges, a hundredth of each
+scene.
 """
 
 from __future__ import annotations
@@ -381,7 +382,7 @@ def _plan(request: Request) -> Plan:
     jobs: dict[Any, Any] = {
         ("range", case, k): partial(_range_run, *case, [seed, k])
         for case in RANGES
-        for k in range(few)
+        for k in range(5 * few)
     }
     for models, motions in (("tracker", MOTIONS), ("tracker_ships", SHIPS)):
         for motion in motions:

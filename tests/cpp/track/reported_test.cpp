@@ -211,6 +211,33 @@ TEST(Reported, IsTheErrorOfAFilterWhoseNoiseDoesNotCome) {
   }
 }
 
+// Of a vessel that makes way the place along its course is known better than the filter says, and
+// by no more than a filter without noise knows; that across it is known no better.
+TEST(Reported, KnowsAVesselThatMakesWayBetterAlongItsCourse) {
+  const Vec<double, 2> along(0.6, 0.8), across(-0.8, 0.6);
+  for (const double psd : {1e-6, 1e-5, 1e-3, 0.1}) {
+    const SettledFilter filter(psd);
+    Gaussian<4> belief{{0.0, 6.0, 0.0, 8.0}, Mat<double, 4, 4>::Identity()};
+    belief.covariance(0, 0) = belief.covariance(2, 2) = filter.variance;
+    const Mat<double, 2, 2> found = position_in(reported(belief, filter.variance, filter.gain, 2000,
+                                                         1.0, Mat<double, 2, 2>::Zero()))
+                                        .covariance;
+    EXPECT_LE(along.dot(found * along), filter.variance) << filter.gain;
+    EXPECT_GE(along.dot(found * along) / filter.error_variance, 0.75) << filter.gain;
+    EXPECT_GE(across.dot(found * across), filter.variance) << filter.gain;
+    EXPECT_NEAR(along.dot(found * across), 0.0, 1e-12);
+  }
+}
+
+TEST(Reported, IsACovarianceHoweverMuchIsLeftOut) {
+  Draw draw(10);
+  for (int k = 0; k < 100; ++k) {
+    const Gaussian<4> belief{10.0 * draw.normals<4>(), draw.definite<4>()};
+    const Gaussian<4> found = reported(belief, 100.0, 0.01, 2000, 1.0, Mat<double, 2, 2>::Zero());
+    EXPECT_TRUE(Cholesky<4>(found.covariance).ok());
+  }
+}
+
 TEST(Reported, LeavesOutNothingOfWhatAPredictionAdds) {
   const Mat<double, 2, 2> none = Mat<double, 2, 2>::Zero();
   const Gaussian<4> estimate{Vec<double, 4>::Zero(), 4.0 * Mat<double, 4, 4>::Identity()};

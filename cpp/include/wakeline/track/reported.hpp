@@ -98,30 +98,47 @@ inline Mat<double, 2, 2> bent_m2(const Vec<double, 2>& from_antenna,
   return 0.75 * s2 * s2 * from_antenna * from_antenna.transpose();
 }
 
+/// Leaves out a part of the variance of the position along the course, as if the place along it had
+/// been measured and found where it is.
+inline void leave_out_along_course(double part, Gaussian<4>& kinematics) noexcept {
+  const Vec<double, 4> along(kinematics.mean[1], 0.0, kinematics.mean[3], 0.0);
+  const Vec<double, 4> of_all = kinematics.covariance * along;
+  const double of_along = along.dot(of_all);
+  if (of_along > 0.0) kinematics.covariance -= part / of_along * of_all * of_all.transpose();
+}
+
 /// The belief of a track as it is reported. The estimator does without all four:
 ///
 /// - Noise and outliers are allowances. Where a plot has a small weight `gain`, the target has held
-///   its course for as long as the filter remembers, and neither came: the position errs by two
-///   thirds of its variance (three quarters without maneuvers, the small-gain limit of an
-///   alpha-beta filter, and a tenth less without outliers). The rest is left out as far as plots
-///   older than eight scans count, (1 - gain)⁸, and the first of its `hits` plots no longer do: a
-///   line through n plots has the gain 4/n with neither noise nor outliers. Of a belief ahead of
-///   the track, whose own position has the variance `estimate_m2`, what the way adds stays.
+///   its course and speed for as long as the filter remembers, and neither came: the position errs
+///   by two thirds of its variance (three quarters without maneuvers, the small-gain limit of an
+///   alpha-beta filter, and a tenth less without outliers). The rest, `kAllowed`, is left out where
+///   the course is not known. Where it is, it may be altered at any time, the speed of a vessel
+///   seldom: `kKept` of what is along the course is left out, half of it at most, and all else has
+///   the factor 1 + `kAlters`. All of this as far as plots older than eight scans count,
+///   (1 - gain)⁸, and the first of its `hits` plots no longer do: a line through n plots has the
+///   gain 4/n with neither noise nor outliers. Of a belief ahead of the track, whose own position
+///   has the variance `estimate_m2`, what the way adds stays.
 /// - The errors of the radar are not as stated: the same variance has the factor `scale`.
 /// - An alteration that does not show yet: of the course by `kUnseenCourse_rad`, of the speed by
 ///   `kUnseenSpeed` of it.
 /// - The errors of the position that stay from scan to scan.
 inline Gaussian<4> reported(Gaussian<4> kinematics, double estimate_m2, double gain, int hits,
                             double scale, const Mat<double, 2, 2>& stays_m2) noexcept {
+  constexpr double kAllowed = 1.0 / 3, kKept = 0.8, kMostKept = 0.5, kAlters = 0.1;
   constexpr double kUnseenCourse_rad = 0.06, kUnseenSpeed = 0.02;
   const double of_a_line = std::min(4.0 / (hits * gain), 1.0);
   const double held = std::pow(std::max(1.0 - gain, 0.0), 8) * (1.0 - std::pow(of_a_line, 8));
+  const Vec<double, 2> velocity_mps(kinematics.mean[1], kinematics.mean[3]);
+  const double square = velocity_mps.squaredNorm();
+  const double known = square / (square + velocity_covariance(kinematics).trace());
   const double now_m2 = (kinematics.covariance(0, 0) + kinematics.covariance(2, 2)) / 2;
-  const double more = (1.0 - held / 3.0) * scale - 1.0;
-  const double errs = std::sqrt(1.0 + more * std::min(estimate_m2 / now_m2, 1.0));
+  const double of_estimate = std::min(estimate_m2 / now_m2, 1.0);
+  const double allowed = 1.0 + held * (known * kAlters - (1.0 - known) * kAllowed);
+  const double errs = std::sqrt(1.0 + (allowed * scale - 1.0) * of_estimate);
   const Vec<double, 4> factor(errs, 1.0, errs, 1.0);
   kinematics.covariance = factor.asDiagonal() * kinematics.covariance * factor.asDiagonal();
-  const Vec<double, 2> velocity_mps(kinematics.mean[1], kinematics.mean[3]);
+  leave_out_along_course(known * std::min(kKept * held, kMostKept) * of_estimate, kinematics);
   const Vec<double, 2> ahead_mps = kUnseenSpeed * velocity_mps;
   const Vec<double, 2> abeam_mps =
       kUnseenCourse_rad * Vec<double, 2>(-velocity_mps[1], velocity_mps[0]);
