@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from wakeline.recording.nmea.reader import Rows
-from wakeline.recording.nmea.sentence import FIELDS, Sentence, parted, pieces_of
+from wakeline.recording.nmea.sentence import FIELDS, MODE_FIELD, Sentence, parted, pieces_of
 
 from .ais import AisAssembly, decoded
 from .lines import LineAssembly
@@ -20,7 +20,6 @@ _GIVES = {
     "VTG": ("velocity",),
     **dict.fromkeys(("HDT", "THS", "HDG", "HDM"), ("heading",)),
 }
-_MODE = {"GGA": 5, "GNS": 5, "RMC": 11, "GLL": 6, "VTG": 8, "THS": 1}  # fields
 _STATUS = {"RMC": 1, "GLL": 5}  # fields
 _SIMULATOR = "simulator"
 _NOT_MEASURED = {  # by mode or quality; of several modes the first one counts
@@ -135,7 +134,7 @@ def _readings(sentence: Sentence, rows: Rows) -> Iterator[OwnReading]:
 def _state(sentence: Sentence) -> str:
     """What an instrument says of data that it has not measured; empty if it has."""
     kind = sentence.kind
-    modes = sentence.text(_MODE[kind]) if kind in _MODE else ""
+    modes = sentence.text(MODE_FIELD[kind]) if kind in MODE_FIELD else ""
     states = [words for mode, words in _NOT_MEASURED.items() if mode in modes]
     if states and len(states) == len(set(modes)):
         return states[0]

@@ -57,8 +57,8 @@ struct RadarState {
   [[nodiscard]] const Look& look(const Track& track) const noexcept {
     return looks[static_cast<std::size_t>(track.slot)];
   }
-  [[nodiscard]] Meeting& meeting(const Track& track) noexcept {
-    return meetings[static_cast<std::size_t>(track.slot)];
+  [[nodiscard]] Meeting& meeting(int slot) noexcept {
+    return meetings[static_cast<std::size_t>(slot)];
   }
 
   /// Begins to look at a new track. The beam was there last when it had the track's bearing.
@@ -66,7 +66,7 @@ struct RadarState {
     const Vec<double, 2> d = track.position() - position();
     const double passed_rad = beam.last_rad(std::atan2(d[1], d[0]) + radar.bearing_offset_rad);
     look(track) = {.looked_s = time_s};
-    meeting(track) = {passed_rad, passed_rad};
+    meeting(track.slot) = {passed_rad, passed_rad};
   }
 
   /// Whether the radar covers a position.
@@ -90,7 +90,7 @@ struct RadarState {
     ownership.archive(fields, plots.size());
     for (const int slot : slots) {
       looks[static_cast<std::size_t>(slot)].archive(fields);
-      fields(meetings[static_cast<std::size_t>(slot)]);
+      fields(meeting(slot));
     }
   }
 };

@@ -146,8 +146,7 @@ class ScanStages {
           state().beam.sweep(sector->from_rad, width_rad, dt_s, state().radar.period_s);
       half_rad = width_rad / 2;
       if (missed_rad > 0.0)
-        for (const int slot : picture_.tracks.slots())
-          state().meeting(picture_.tracks.at(slot)).miss_turns(missed_rad);
+        for (const int slot : picture_.tracks.slots()) state().meeting(slot).miss_turns(missed_rad);
     } else {
       state().beam.turn();
     }
@@ -174,16 +173,15 @@ class ScanStages {
     const double beam_rad = state().beam.angle_rad();
     if (whole_turn_) {
       for (const int slot : picture_.tracks.slots()) {
-        const Track& track = picture_.tracks.at(slot);
-        state().meeting(track) = {beam_rad - kPi<double>, beam_rad};
-        if (may_be_seen(track)) due_.push_back(slot);
+        state().meeting(slot) = {beam_rad - kPi<double>, beam_rad};
+        if (may_be_seen(picture_.tracks.at(slot))) due_.push_back(slot);
       }
       return;
     }
     rival_plot_.resize(static_cast<std::size_t>(state().plots.size()));
     std::iota(rival_plot_.begin(), rival_plot_.end(), 0);
     for (const int slot : picture_.tracks.slots())
-      if (beam_rad >= state().meetings[static_cast<std::size_t>(slot)].look_rad) look_for(slot);
+      if (beam_rad >= state().meeting(slot).look_rad) look_for(slot);
     defer();
   }
 
@@ -194,10 +192,10 @@ class ScanStages {
     const double beam_rad = state().beam.angle_rad();
     const GateSight sight(
         position_at_constant_velocity(track.kinematics, state().time_s - track.time_s),
-        state().meeting(track).passed_rad, picture_.gate.threshold(), state().radar, state().own);
+        state().meeting(slot).passed_rad, picture_.gate.threshold(), state().radar, state().own);
     BeamArc arc = sight.arc(picture_.config.outlier_variance());
     if (arc.from_rad > beam_rad) {
-      state().meeting(track).look_rad = look_rad(track, arc);
+      state().meeting(slot).look_rad = look_rad(track, arc);
       return;
     }
     const bool is_passed = arc.to_rad <= beam_rad;
@@ -242,7 +240,7 @@ class ScanStages {
 
   /// Notes that the beam has passed a track.
   void pass(Track& track, const BeamArc& arc) noexcept {
-    state().meeting(track) = {
+    state().meeting(track.slot) = {
         std::max(arc.centre_rad, state().beam.last_rad(arc.centre_rad) - Beam::kTurn),
         look_rad(track, arc) + Beam::kTurn};
   }
@@ -698,13 +696,13 @@ class ScanStages {
     const double beam_rad = state().beam.angle_rad();
     double begin_rad = beam_rad;
     for (const int slot : due_) {
-      const Meeting& meeting = state().meetings[static_cast<std::size_t>(slot)];
+      const Meeting& meeting = state().meeting(slot);
       begin_rad = std::min(begin_rad, meeting.look_rad - Beam::kTurn);
     }
     met_.resize(picture_.tracks.slots().size());
     std::size_t count = 0;
     for (const int slot : picture_.tracks.slots()) {
-      const Meeting& meeting = state().meetings[static_cast<std::size_t>(slot)];
+      const Meeting& meeting = state().meeting(slot);
       met_[count] = slot;  // without a branch, which a processor would often guess wrong
       count += std::size_t{whole_turn_} | std::size_t{meeting.look_rad <= beam_rad} |
                std::size_t{meeting.end_rad() >= begin_rad};
@@ -751,7 +749,7 @@ class ScanStages {
           if (track == nullptr) return;
           track->history = 3u;
           Look& look = look_at(*track);
-          state().meeting(*track) = {start.beam_rad, start.beam_rad};
+          state().meeting(track->slot) = {start.beam_rad, start.beam_rad};
           look.learned = start.learned;
           look.seen_s = start.time_s;
         });

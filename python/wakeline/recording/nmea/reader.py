@@ -32,7 +32,7 @@ from .log import (
     TrueHeading,
     WaterSpeed,
 )
-from .sentence import Sentence, lines_of, sentences
+from .sentence import MODE_FIELD, Sentence, lines_of, sentences
 from .sources import ClockStands, Timed, choose, date_notes
 
 # Priority of the sentences that give the same time.
@@ -287,7 +287,7 @@ def _rmc(s: Sentence, rows: Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(2)
     if s.faults:
         return
-    status, quality = s.letter(1, "AV"), _quality(s, 11)
+    status, quality = s.letter(1, "AV"), _quality(s)
     valid = not s.faults and status == "A" and quality not in _NOT_MEASURED
     stamp = rows.stamp(s, time_s, s.day(8), valid=valid, place_deg=place)
     _add_fix(rows, s, stamp, valid, place, quality)
@@ -302,7 +302,7 @@ def _gga(s: Sentence, rows: Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
-    given = s.number(5, 0, _SBAS)
+    given = s.number(MODE_FIELD[s.kind], 0, _SBAS)
     quality = _NOT_SAID if math.isnan(given) else int(given)
     _add_fix_with_hdop(rows, s, time_s, place, _DIFFERENTIAL if quality == _SBAS else quality)
 
@@ -311,7 +311,7 @@ def _gns(s: Sentence, rows: Rows) -> None:
     time_s, place = s.time_of_day_s(0), s.place_deg(1)
     if s.faults:
         return
-    modes = s.letters(5, _BEST_MODE_FIRST)
+    modes = s.letters(MODE_FIELD[s.kind], _BEST_MODE_FIRST)
     quality = _QUALITY[min(modes, key=_BEST_MODE_FIRST.index)] if modes else _NOT_SAID
     _add_fix_with_hdop(rows, s, time_s, place, quality)
 
@@ -328,7 +328,7 @@ def _gll(s: Sentence, rows: Rows) -> None:
     place, time_s = s.place_deg(0), s.time_of_day_s(4)
     if s.faults:
         return
-    status, quality = s.letter(5, "AV"), _quality(s, 6)
+    status, quality = s.letter(5, "AV"), _quality(s)
     valid = not s.faults and status != "V" and quality not in _NOT_MEASURED
     stamp = rows.stamp(s, time_s, valid=valid, place_deg=place)
     _add_fix(rows, s, stamp, valid, place, quality)
@@ -351,7 +351,7 @@ def _add_fix(
 def _vtg(s: Sentence, rows: Rows) -> None:
     if rows.timed and rows.timed[-1][3][:-3] == s.address[:-3]:
         rows.before_vtg[s.line] = len(rows.timed) - 1
-    quality = _quality(s, 8)
+    quality = _quality(s)
     valid = not s.faults and quality not in _NOT_MEASURED
     speed_mps = _speed_mps(s, 4) if s.says(5, "N") else _kmh(s, 6)
     course_rad = s.angle_rad(0) if s.says(1, "T") else math.nan
@@ -363,7 +363,8 @@ def _hdt(s: Sentence, rows: Rows) -> None:
 
 
 def _ths(s: Sentence, rows: Rows) -> None:
-    rows.add_where_known("heading", s, s.letter(1, "AEMSV") in ("A", "S"), s.angle_rad(0))
+    valid = s.letter(MODE_FIELD[s.kind], "AEMSV") in ("A", "S")
+    rows.add_where_known("heading", s, valid, s.angle_rad(0))
 
 
 def _hdg(s: Sentence, rows: Rows) -> None:
@@ -427,8 +428,8 @@ _IS_FOR = {
 }
 
 
-def _quality(s: Sentence, k: int) -> int:
-    return _QUALITY.get(s.letter(k, "".join(_QUALITY)), _NOT_SAID)
+def _quality(s: Sentence) -> int:
+    return _QUALITY.get(s.letter(MODE_FIELD[s.kind], "".join(_QUALITY)), _NOT_SAID)
 
 
 def _knots(s: Sentence, k: int) -> float:

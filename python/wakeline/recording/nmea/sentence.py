@@ -29,6 +29,8 @@ FIELDS = {
     "ROT": 2,
     "ZDA": 4,
 }
+# Where sentences say how their values came about: quality of GGA, mode of all others.
+MODE_FIELD = {"GGA": 5, "GNS": 5, "RMC": 11, "GLL": 6, "VTG": 8, "THS": 1}
 
 _LINE_END = re.compile(rb"\r*\n|\r")
 _PIECE = re.compile(rb"[$!][^$\\\r\n]*")
