@@ -230,6 +230,32 @@ TEST(Radars, AHiddenTargetIsShownForAsLongAsTheSlowestRadarAloneShowsIt) {
   EXPECT_EQ(shown(both), 0);
 }
 
+// One that turns but does not cover a target says nothing of it, and does not stand in for the one
+// that has fallen silent.
+TEST(Radars, TargetsOfASilentOneCoastUntilTheyAreLostWhetherAnotherTurnsOrNot) {
+  Radar blind = kCoarse;
+  blind.max_range_m = 10.0;
+  for (const int sectors : {1, 16}) {
+    VesselTracker tracker = tracker_of({kFine, blind});
+    const std::vector<Boat> boats = fleet(8, 3);
+    const Station seeing{.number = 0, .radar = kFine, .detection = 1.0, .sectors = sectors};
+    const Station turning{
+        .number = 1, .radar = blind, .place = {.east_m = -2000.0}, .sectors = sectors};
+    watch(tracker, {seeing, turning}, boats, 0.0, 60.0, 3, nothing);
+    const auto count = [&](TrackStatus status) {
+      const std::vector<const Track*> tracks = tracks_of(tracker, true);
+      return std::count_if(tracks.begin(), tracks.end(),
+                           [&](const Track* track) { return track->status == status; });
+    };
+    EXPECT_EQ(count(TrackStatus::kConfirmed), std::ssize(boats));
+    watch(tracker, {turning}, boats, 60.0, 60.0 + 4 * kCoarse.period_s, 3, nothing);
+    EXPECT_EQ(count(TrackStatus::kConfirmed), 0) << "none is seen";
+    EXPECT_EQ(count(TrackStatus::kCoasting), std::ssize(boats));
+    watch(tracker, {turning}, boats, 60.0 + 4 * kCoarse.period_s, 240.0, 3, nothing);
+    EXPECT_EQ(tracks_of(tracker, true).size(), 0u);
+  }
+}
+
 TEST(Radars, OneThatHasNotBegunDoesNotCountMisses) {
   Radar slow = kFine;
   slow.period_s = 60.0;

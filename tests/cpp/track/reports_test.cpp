@@ -180,6 +180,24 @@ TEST(Reports, ThatLieDragNoTrackOfTheRadar) {
   expect_no_drag(fleet(6, 3), lies);
 }
 
+// Before the radar sees them they make tracks that stand where they say, of which the plots beside
+// may be outliers, one by one.
+TEST(Reports, OfAPlaceBesideTheirEchoesDragNoTrackForLong) {
+  const auto run = [](Scene& scene) {
+    for (Vessel& vessel : scene.vessels) vessel.seen = false;
+    scene.run(30.0);
+    for (Vessel& vessel : scene.vessels) vessel.seen = true;
+    scene.run(400.0);
+  };
+  Scene radar{fleet(20, 41)}, both{all_reporting(20, 41)};
+  for (Vessel& vessel : both.vessels)
+    vessel.tamper = [](PositionReport& one) { one.position_m[1] += 100.0; };
+  run(radar);
+  run(both);
+  EXPECT_LT(both.rms_m(), 1.3 * radar.rms_m());
+  EXPECT_GE(both.count(TrackEvent::kIdentityDisagrees), 10);
+}
+
 TEST(Reports, OfAVelocityAtWhichTheirPositionsDoNotMoveDragNoTrackOfTheRadar) {
   std::vector<Vessel> vessels = fleet(20, 3);
   std::erase_if(vessels, [](const Vessel& one) { return one.boat.velocity_mps.norm() < 3.0; });

@@ -161,6 +161,7 @@ struct Identity {
 
   static constexpr std::size_t kMostCandidates = 3;
   static constexpr double kLeastLogOdds = -8.0, kMostLogOdds = 6.0;
+  static constexpr double kFirstDoubt_s = 240.0, kMostDoubt_s = 1920.0;
 
   std::array<char, PositionReport::kMostSource + 1> source = {};
   std::array<char, PositionReport::kMostIdentity + 1> name = {};
@@ -171,8 +172,10 @@ struct Identity {
   double position_std_m = 0.0;
   ReportedVelocity velocity = {};
   bool disagrees = false;  ///< its last report was far from the track that it is
-  int leaps = 0;           ///< reports where a vessel cannot run to, since it was steady
-  int in_a_row = 0;        ///< reports between which a vessel can have run
+  double doubted_until_s = -std::numeric_limits<double>::infinity();
+  double doubt_s = kFirstDoubt_s;  ///< for which it is doubted when radars contradict it next
+  int leaps = 0;                   ///< reports where a vessel cannot run to, since it was steady
+  int in_a_row = 0;                ///< reports between which a vessel can have run
   std::array<Candidate, kMostCandidates> candidates = {};
 
   [[nodiscard]] bool reported() const noexcept { return std::isfinite(time_s); }
@@ -209,6 +212,13 @@ struct Identity {
     position_m = report.position_m;
     position_std_m = report.position_std_m;
   }
+
+  /// Doubts it as radars contradict its last report, each time for twice as long.
+  void doubt() noexcept {
+    doubted_until_s = time_s + doubt_s;
+    doubt_s = std::min(2.0 * doubt_s, kMostDoubt_s);
+  }
+  [[nodiscard]] bool is_doubted() const noexcept { return time_s < doubted_until_s; }
 
   /// The probability of each candidate: of its odds against those of the others and of none.
   [[nodiscard]] double probability(const Candidate& candidate) const noexcept {
@@ -261,6 +271,8 @@ struct Identity {
     fields(position_std_m);
     velocity.archive(fields);
     fields(disagrees);
+    fields(doubted_until_s);
+    fields(doubt_s);
     fields(leaps);
     fields(in_a_row);
     for (Candidate& candidate : candidates) candidate.archive(fields);

@@ -17,7 +17,22 @@ struct Look {
   int misses = 0;                                            ///< of this radar, in a row
   Vec<double, 2> innovation = Vec<double, 2>::Zero();        ///< the last one, whitened
   double product = 0.0;                                      ///< of the last two
+  Vec<double, 2> sum = Vec<double, 2>::Zero();  ///< of them, each a twentieth less than the next
   OwnPlots learned = {};  ///< what was learned as clutter of the target's own plots
+
+  /// Takes the whitened innovation of a plot.
+  void note(const Vec<double, 2>& whitened) noexcept {
+    product = whitened.dot(innovation);
+    innovation = whitened;
+    sum = kMemory * sum + whitened;
+  }
+
+  /// Whether plots are beside the track by what no chance is: χ² of two degrees of freedom, were
+  /// they about it.
+  [[nodiscard]] bool is_beside() const noexcept {
+    constexpr double kBeside = 25.0;
+    return (1.0 - kMemory * kMemory) * sum.squaredNorm() > kBeside;
+  }
 
   void archive(Archive& fields) {
     fields(visibility);
@@ -26,8 +41,12 @@ struct Look {
     fields(misses);
     fields(innovation);
     fields(product);
+    fields(sum);
     learned.archive(fields);
   }
+
+ private:
+  static constexpr double kMemory = 0.95;
 };
 
 }  // namespace wakeline

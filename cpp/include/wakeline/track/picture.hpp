@@ -38,7 +38,7 @@ struct Picture {
   static constexpr double kSurelyExists = 0.999;       ///< a target that was designated or reports
   static constexpr double kLongestSilence_s = 3600.0;  ///< of the radar
   static constexpr double kPointedPeriods = 2.0;       ///< a track is pointed at within so many
-  static constexpr std::uint32_t kArchiveVersion = 22;
+  static constexpr std::uint32_t kArchiveVersion = 23;
 
   Picture(std::span<const Radar> of, const TrackerConfig& with, const Estimator& made_of)
       : config(validated(with)),
@@ -202,11 +202,22 @@ struct Picture {
 
   /// Whether one of the radars has lately seen the target of a track.
   [[nodiscard]] bool is_seen_by_radar(const Track& track) const noexcept {
+    return std::any_of(radars.begin(), radars.end(),
+                       [&](const RadarState& radar) { return sees(radar, track); });
+  }
+
+  /// Whether all radars that have lately seen the target of a track see it beside the track.
+  [[nodiscard]] bool is_beside_plots(const Track& track) const noexcept {
+    return is_seen_by_radar(track) &&
+           std::all_of(radars.begin(), radars.end(), [&](const RadarState& radar) {
+             return !sees(radar, track) || radar.look(track).is_beside();
+           });
+  }
+
+  [[nodiscard]] bool sees(const RadarState& radar, const Track& track) const noexcept {
     constexpr double kPeriods = 4.0;
-    return std::any_of(radars.begin(), radars.end(), [&](const RadarState& radar) {
-      return radar.in_use && radar.started &&
-             scan_time_s - radar.look(track).seen_s <= kPeriods * radar.radar.period_s;
-    });
+    return radar.in_use && radar.started &&
+           scan_time_s - radar.look(track).seen_s <= kPeriods * radar.radar.period_s;
   }
 
   /// Whether a track was designated for a time to which the scans have not come yet: until then it
@@ -233,6 +244,19 @@ struct Picture {
       }
     }
     return nearest;
+  }
+
+  /// Makes a track less certain that is beside its plots, so that they take it to where they are.
+  void loosen(Track& track) noexcept {
+    constexpr double kPlots = 4.0, kTime_s = 20.0;
+    Gaussian<4> belief = track.kinematics;
+    for (const int k : {0, 2}) {
+      belief.covariance(k, k) += kPlots * track.plot_m2;
+      belief.covariance(k + 1, k + 1) += track.plot_m2 / (kTime_s * kTime_s);
+    }
+    if (started_as.start(belief) != Status::kOk) return;
+    copy_state(started_as, estimator_at(track.slot));
+    track.kinematics = belief;
   }
 
   /// A new tentative track, for which there is room; null when its estimator cannot start.

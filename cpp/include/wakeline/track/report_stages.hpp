@@ -55,8 +55,14 @@ class ReportStages {
     if (identity.jumps() && !jumped_before)
       picture_.announce(TrackEvent::kIdentityJumps, track, identity);
     if (track == nullptr) return {Status::kGated, 0, picture_.events};
+    // Wrong reports that are taken draw their track away from its plots.
+    if (!identity.is_doubted() && picture_.is_beside_plots(*track)) {
+      identity.doubt();
+      picture_.loosen(*track);
+    }
     const bool agrees =
-        std::find(agreeing_.begin(), agreeing_.end(), track->slot) != agreeing_.end();
+        std::find(agreeing_.begin(), agreeing_.end(), track->slot) != agreeing_.end() &&
+        !identity.is_doubted();
     if (!agrees && !identity.disagrees)
       picture_.announce(TrackEvent::kIdentityDisagrees, track, identity);
     identity.disagrees = !agrees;
@@ -74,7 +80,7 @@ class ReportStages {
   static constexpr double kMostReportEvidence = 4.0;         ///< of a report, log odds
   static constexpr double kReportGate = 16.0;                ///< squared standard deviations
   static constexpr double kVelocityGate = 25.0;              ///< the same of the velocity
-  static constexpr double kNarrow = 0.36;  ///< of both, for a report that contradicts others
+  static constexpr double kNarrow = 0.36;  ///< of both, where others or radars contradict it
   static constexpr double kUnseen = 0.1;   ///< of the velocity, an alteration not yet tracked
   static constexpr double kSure = 0.9;     ///< a report updates a track that it is of by this much
 
@@ -166,9 +172,11 @@ class ReportStages {
                      std::log(2.0 * kPi<double> * kOtherVessels_per_m2);
       is_near_ = is_near_ || distance <= kReportGate;
       // Where the radar sees the target, a report that may be wrong is better left out.
-      const bool seen = report.has_velocity() && picture_.is_seen_by_radar(track);
-      const double narrow = seen && identity.velocity.contradicts() ? kNarrow : 1.0;
-      const bool differs = seen && velocity_distance(report, belief) > narrow * kVelocityGate;
+      const bool seen = picture_.is_seen_by_radar(track);
+      const bool doubted = seen && (identity.disagrees || identity.velocity.contradicts());
+      const double narrow = doubted ? kNarrow : 1.0;
+      const bool differs = seen && report.has_velocity() &&
+                           velocity_distance(report, belief) > narrow * kVelocityGate;
       if (differs && identity.velocity.fits()) evidence_[k] = std::min(evidence_[k], 0.0);
       best = std::max(best, evidence_[k]);
       if (distance <= narrow * kReportGate && !differs) agreeing_.push_back(track.slot);

@@ -403,7 +403,10 @@ class ScanStages {
     if (!(silent_s > kSilentPeriods * period_s) || picture_.is_awaited(track)) return;
     const double periods = std::floor(silent_s / period_s) - kSilentPeriods + 1.0;
     const bool hidden = is_hidden(track);
-    const double misses = state().beam.resumes() || hidden ? 0.0 : periods;
+    // A hidden target is not seen, but is not missed by anyone: it coasts.
+    const double misses = state().beam.resumes() ? 0.0
+                          : hidden               ? (track.misses == 0 ? 1.0 : 0.0)
+                                                 : periods;
     if (!(picture_.scan_time_s < track.seen_until_s))
       for (double k = 0.0; k < misses; ++k) track.count(false);
     track.looked_s += periods * period_s;
@@ -425,17 +428,15 @@ class ScanStages {
     track.kinematics = step.kinematics;
   }
 
-  /// Whether radars turn, and a track is where none of them sees.
+  /// Whether a track is where none of the radars sees, and one of them turns.
   [[nodiscard]] bool is_hidden(const Track& track) const noexcept {
     const Vec<double, 2> position =
         track.position() + (picture_.scan_time_s - track.time_s) * track.velocity();
     bool turns = false;
     for (const RadarState& radar : picture_.radars) {
-      const double silent_s = picture_.scan_time_s - radar.time_s;
-      if (!radar.in_use || !radar.started || silent_s > kSilentPeriods * radar.radar.period_s)
-        continue;
+      if (!radar.in_use || !radar.started) continue;
       if (radar.covers(position)) return false;
-      turns = true;
+      turns |= picture_.scan_time_s - radar.time_s <= kSilentPeriods * radar.radar.period_s;
     }
     return turns;
   }
@@ -630,9 +631,7 @@ class ScanStages {
     track.nis = innovation.squaredNorm();
     if (is_seen(probabilities)) {
       track.consistency.add(innovation);
-      Look& look = look_at(track);
-      look.product = innovation.dot(look.innovation);
-      look.innovation = innovation;
+      look_at(track).note(innovation);
     }
     track.plot_m2 = state().plots[best.plot].position.covariance.trace() / 2;
   }
