@@ -384,6 +384,32 @@ std::vector<int> hits_in(int sectors, const std::function<bool(double turn)>& gi
   return hits;
 }
 
+// An extractor that takes longer than a sector gives plots with the next ones.
+TEST(Sectors, WhosePlotsComeWithTheNextOneOrTwoLoseNoTrack) {
+  const std::vector<int> in_time = hits_in(32, [](double) { return true; });
+  const std::vector<Plot> plots = record(boats(), {}, 20 * kTurn, 12);
+  for (const int late : {1, 2}) {
+    constexpr int kSectors = 32;
+    VesselTracker tracker = make_tracker();
+    std::size_t next = 0;
+    for (int k = 0; k < 20 * kSectors; ++k) {
+      const double to_rad = kTurn * (k + 1) / kSectors, time_s = Antenna{}.time_s(to_rad);
+      const double until_s = k < 5 * kSectors ? time_s  // in time at first
+                                              : time_s - late * kPeriod_s / kSectors;
+      const std::size_t begin = next;
+      while (next < plots.size() && plots[next].time_s <= until_s) ++next;
+      (void)tracker.sector({0, to_rad - kTurn / kSectors, to_rad, time_s,
+                            std::span(plots).subspan(begin, next - begin)});
+    }
+    for (std::size_t k = 0; k < in_time.size(); ++k) {
+      const Track* track = track_at(tracker, boats()[k].at(20 * kPeriod_s), 80.0);
+      ASSERT_NE(track, nullptr) << k;
+      EXPECT_GE(track->hits, in_time[k] - 4) << "until it is known";
+      EXPECT_EQ(track->misses, 0);
+    }
+  }
+}
+
 TEST(Sectors, AfterASilenceOfSomeTurnsHaveTheirPlotsUsedAsOfTurns) {
   for (const int silent : {1, 2, 3, 5}) {
     const auto given = [&](double turn) { return turn < 10.0 || turn >= 10.0 + silent; };

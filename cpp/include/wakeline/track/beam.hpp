@@ -35,6 +35,44 @@ struct BeamArc {
   double to_rad;
 };
 
+/// How far plots come behind the sectors that they are given with: an extractor that takes longer
+/// than a sector gives them with the next one or two.
+class PlotLag {
+ public:
+  /// The sector that the beam has passed where plots are so late: from which angle, and its width.
+  [[nodiscard]] std::pair<double, double> passed(double from_rad, double width_rad) noexcept {
+    const double before_rad = std::exchange(lag_rad_, share_ > kMany ? farthest_rad_ : 0.0);
+    const double less_rad = std::max(before_rad - lag_rad_, 0.0);
+    return {from_rad - lag_rad_ - less_rad, width_rad + less_rad};
+  }
+
+  /// Learns from the plots of a sector.
+  void learn(const Sector& sector, double width_rad) noexcept {
+    constexpr double kMemory = 0.95, kMostWidths = 2.0;
+    for (const Plot& plot : sector.plots) {
+      const double behind_rad = wrap_angle(sector.from_rad - plot.bearing_rad);
+      const bool is_behind = behind_rad > 0.0 && behind_rad <= kMostWidths * width_rad;
+      share_ = kMemory * share_ + (is_behind ? 1.0 - kMemory : 0.0);
+      if (is_behind) farthest_rad_ = std::max(farthest_rad_, behind_rad);
+    }
+    if (share_ < kFew) farthest_rad_ = 0.0;
+  }
+
+  void archive(Archive& fields) {
+    fields(share_);
+    fields(farthest_rad_);
+    fields(lag_rad_);
+  }
+
+ private:
+  /// Few plots are outside of their sectors by their errors.
+  static constexpr double kFew = 0.1, kMany = 1.0 / 3;
+
+  double share_ = 0.0;         ///< of the last twenty plots or so that are behind their sectors
+  double farthest_rad_ = 0.0;  ///< of these
+  double lag_rad_ = 0.0;       ///< of the last sector
+};
+
 /// Where the beam of an antenna is, and since which angle it has swept without a gap. Angles are
 /// unwrapped: they grow by a turn with each turn, and north is no seam.
 class Beam {

@@ -39,6 +39,7 @@ struct RadarState {
   bool started = false;
   double time_s = 0.0;  ///< of its last scan
   Beam beam;
+  PlotLag plot_lag = {};
   OwnShip own;  ///< as of the last plot, moved on
   DetectionProbability detection_probability;
   LearnedErrors learned_errors;
@@ -81,6 +82,7 @@ struct RadarState {
     fields(started);
     fields(time_s);
     beam.archive(fields);
+    plot_lag.archive(fields);
     fields(own);
     detection_probability.archive(fields);
     learned_errors.archive(fields);

@@ -142,8 +142,10 @@ class ScanStages {
     double half_rad = kPi<double>;
     if (sector != nullptr) {
       const double width_rad = Beam::width_rad(sector->from_rad, sector->to_rad);
+      const auto [from_rad, passed_rad] = state().plot_lag.passed(sector->from_rad, width_rad);
       const double missed_rad =
-          state().beam.sweep(sector->from_rad, width_rad, dt_s, state().radar.period_s);
+          state().beam.sweep(from_rad, passed_rad, dt_s, state().radar.period_s);
+      state().plot_lag.learn(*sector, width_rad);
       half_rad = width_rad / 2;
       if (missed_rad > 0.0)
         for (const int slot : picture_.tracks.slots()) state().meeting(slot).miss_turns(missed_rad);
