@@ -690,7 +690,7 @@ ValueError
           py::arg_v("own", OwnShip{}, "OwnShip()"),
           R"(Take bearings of targets without their ranges, as of a camera.
 
-They update the confirmed tracks, start none, and tell of no misses. Bearings between several tracks
+They update the confirmed tracks, start none, and count no misses. Bearings between several tracks
 are shared by their likelihoods, and which tracks the sensor sees is learned. Errors of such a sensor
 stay for a while: bearings that come faster than the antenna turns count as much as one a turn.
 

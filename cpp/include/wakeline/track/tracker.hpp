@@ -118,7 +118,7 @@ class Tracker {
 
   /// Takes bearings or ranges of targets without the other part of their position.
   ///
-  /// They update the confirmed tracks, start none, and tell of no misses. Values between several
+  /// They update the confirmed tracks, start none, and count no misses. Values between several
   /// tracks are shared by their likelihoods. The time may be as far from the last scan as that of a
   /// report; the estimate of a later time takes them as its velocity says. Errors of such a sensor
   /// stay for a while: values that come faster than the antenna turns count as much as one a turn.
