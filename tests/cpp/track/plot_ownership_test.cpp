@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "track/stages.hpp"
 
 namespace wakeline::plot_ownership_test {
@@ -55,6 +57,26 @@ TEST(PlotOwnership, TheMoreProbableTrackOwnsAPlotIfMoreProbablyThanNot) {
   ownership.add(track_in(2, 0.9), shared, {}, probabilities_of({0.7}));
   EXPECT_EQ(ownership.owner(0).slot, 1);
   EXPECT_DOUBLE_EQ(ownership.clutter_probability()[0], 0.6 * (1.0 - 0.8) * (1.0 - 0.7));
+}
+
+// Two plots that one track owns by halves are of two vessels; one of a track that has hardly been
+// seen is its own.
+TEST(PlotOwnership, APlotThatIsHalfATracksMayStartOneIfTheTrackHasSeenItsTargetAllTheSame) {
+  constexpr double kFree = 0.75;
+  const auto ownership_of = [](const AssociationProbabilities& probabilities) {
+    PlotOwnership ownership(TrackerConfig{});
+    ownership.clear(2);
+    AssociationProbabilities of = probabilities;
+    of.any = std::accumulate(of.of_candidate.begin(), of.of_candidate.end(), 0.0);
+    ownership.add(track_in(0, 1.0),
+                  candidates_of({candidate(0, 1e-3, 1e-6), candidate(1, 1e-3, 1e-6)}), {}, of);
+    return ownership;
+  };
+  EXPECT_FALSE(ownership_of(probabilities_of({0.6, 0.4})).may_start(0, kFree)) << "mostly owned";
+  EXPECT_TRUE(ownership_of(probabilities_of({0.6, 0.4})).may_start(1, kFree));
+  EXPECT_FALSE(ownership_of(probabilities_of({0.0, 0.4})).may_start(1, kFree)) << "missed by 0.6";
+  EXPECT_TRUE(ownership_of(probabilities_of({0.0, 0.2})).may_start(1, kFree)) << "free with 0.8";
+  EXPECT_TRUE(ownership_of(probabilities_of({0.0, 0.0})).may_start(1, kFree));
 }
 
 TEST(PlotOwnership, APlotThatWasAssignedIsNotFreeHoweverDoubtfulTheTrack) {

@@ -67,13 +67,12 @@ class FreePlots {
     });
   }
 
-  /// Adds the plots that do not wait and are free with more than the least probability.
-  void add(const ScanPlots& plots, std::span<const double> free_probability,
-           double least) noexcept {
+  /// Adds the plots that do not wait and may start a track.
+  void add(const ScanPlots& plots, const PlotOwnership& ownership, double free_plot) noexcept {
     for (int k = 0; k < plots.size() && plots_.size() < capacity_; ++k) {
       const ScanPlot& plot = plots[k];
-      const double free = free_probability[static_cast<std::size_t>(k)];
-      if (free > least && !plot.waits)
+      const double free = ownership.free_probability()[static_cast<std::size_t>(k)];
+      if (ownership.may_start(k, free_plot) && !plot.waits)
         plots_.push_back({plot.position, plot.time_s, plot.beam_rad, plot.errors, free});
     }
   }
@@ -165,7 +164,7 @@ class TrackInitiation {
     for (int k = 0; k < plots.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       const double free = ownership.free_probability()[at];
-      if (plots[k].waits || !(free > config_.free_plot)) continue;
+      if (plots[k].waits || !ownership.may_start(k, config_.free_plot)) continue;
       if (!has_room(kMostExistence)) break;
       const auto pair = [&](const FreePlot& earlier) {
         const double likelihood = likelihood_of_way(radar, earlier, plots[k]);
@@ -209,7 +208,7 @@ class TrackInitiation {
                  bool whole_turn) noexcept {
     const bool sorts = whole_turn || beam_rad - sorted_rad_ >= Beam::kTurn / 2;
     if (sorts) before_.drop_before(beam_rad - (whole_turn ? 2.0 : 3.0) * Beam::kTurn);
-    before_.add(plots, ownership.free_probability(), config_.free_plot);
+    before_.add(plots, ownership, config_.free_plot);
     if (!sorts) return;
     before_.sort();
     sorted_rad_ = beam_rad;
