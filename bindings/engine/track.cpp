@@ -844,7 +844,8 @@ ValueError
           R"(Confirm the track at a position, or start a confirmed one, on an operator's designation.
 
 Of several tracks whose gate the position is in, the nearest is confirmed, in standard deviations; a
-hushed one is shown again. A new track begins at rest, or with the velocity given.
+hushed one is shown again. It keeps its velocity. A new track begins at rest, or with the velocity
+given.
 
 Parameters
 ----------

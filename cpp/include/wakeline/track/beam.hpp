@@ -46,16 +46,14 @@ class PlotLag {
     return {from_rad - lag_rad_ - less_rad, width_rad + less_rad};
   }
 
-  /// Learns from the plots of a sector.
-  void learn(const Sector& sector, double width_rad) noexcept {
+  /// Learns from a plot so far behind a sector of that width.
+  void learn(double behind_rad, double width_rad) noexcept {
     constexpr double kMemory = 0.95, kMostWidths = 2.0;
-    for (const Plot& plot : sector.plots) {
-      const double behind_rad = wrap_angle(sector.from_rad - plot.bearing_rad);
-      const bool is_behind = behind_rad > 0.0 && behind_rad <= kMostWidths * width_rad;
-      share_ = kMemory * share_ + (is_behind ? 1.0 - kMemory : 0.0);
-      if (is_behind) farthest_rad_ = std::max(farthest_rad_, behind_rad);
-    }
-    if (share_ < kFew) farthest_rad_ = 0.0;
+    const bool is_behind = behind_rad > 0.0 && behind_rad <= kMostWidths * width_rad;
+    share_ = kMemory * share_ + (is_behind ? 1.0 - kMemory : 0.0);
+    farthest_rad_ = share_ < kFew ? 0.0
+                    : is_behind   ? std::max(farthest_rad_, behind_rad)
+                                  : farthest_rad_;
   }
 
   void archive(Archive& fields) {

@@ -145,7 +145,6 @@ class ScanStages {
       const auto [from_rad, passed_rad] = state().plot_lag.passed(sector->from_rad, width_rad);
       const double missed_rad =
           state().beam.sweep(from_rad, passed_rad, dt_s, state().radar.period_s);
-      state().plot_lag.learn(*sector, width_rad);
       half_rad = width_rad / 2;
       if (missed_rad > 0.0)
         for (const int slot : picture_.tracks.slots()) state().meeting(slot).miss_turns(missed_rad);
@@ -158,6 +157,11 @@ class ScanStages {
         std::max(kClockPeriods * state().radar.period_s, dt_s), [&](const Plot& plot) {
           return sector == nullptr ? middle_rad : Beam::unwrapped(plot.bearing_rad, middle_rad);
         });
+    if (sector != nullptr) {
+      const double begin_rad = Beam::unwrapped(sector->from_rad, middle_rad);
+      for (int k = state().plots.size() - taken; k < state().plots.size(); ++k)
+        state().plot_lag.learn(begin_rad - state().plots[k].beam_rad, 2.0 * half_rad);
+    }
     if (sector != nullptr && sector->own && in_range(sector->own->position<double>()))
       state().own = *sector->own;
     else if (taken > 0)
