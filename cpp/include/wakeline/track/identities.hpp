@@ -172,7 +172,7 @@ struct Identity {
   double position_std_m = 0.0;
   ReportedVelocity velocity = {};
   bool disagrees = false;  ///< its last report was far from the track that it is
-  double doubted_until_s = -std::numeric_limits<double>::infinity();
+  double doubted_until_s = -std::numeric_limits<double>::infinity();  ///< by radars
   double doubt_s = kFirstDoubt_s;  ///< for which it is doubted when radars contradict it next
   int leaps = 0;                   ///< reports where a vessel cannot run to, since it was steady
   int in_a_row = 0;                ///< reports between which a vessel can have run

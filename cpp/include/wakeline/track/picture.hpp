@@ -206,12 +206,16 @@ struct Picture {
                        [&](const RadarState& radar) { return sees(radar, track); });
   }
 
-  /// Whether all radars that have lately seen the target of a track see it beside the track.
+  /// Whether all radars that have lately seen the target of a track see it beside the track. One
+  /// whose errors are correlated may do so by chance, and does not count.
   [[nodiscard]] bool is_beside_plots(const Track& track) const noexcept {
-    return is_seen_by_radar(track) &&
-           std::all_of(radars.begin(), radars.end(), [&](const RadarState& radar) {
-             return !sees(radar, track) || radar.look(track).is_beside();
-           });
+    bool beside = false;
+    for (const RadarState& radar : radars) {
+      if (radar.radar.correlation_time_s > 0.0 || !sees(radar, track)) continue;
+      if (!radar.look(track).is_beside()) return false;
+      beside = true;
+    }
+    return beside;
   }
 
   [[nodiscard]] bool sees(const RadarState& radar, const Track& track) const noexcept {
